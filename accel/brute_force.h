@@ -1,0 +1,24 @@
+// The reference and the oracle: a loop over every primitive. Its answers define what the other accelerators must return.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "accel/primitive.h"
+
+namespace glint {
+
+class BruteForce {
+public:
+    explicit BruteForce(std::shared_ptr<const Geometry> geometry);
+
+    [[nodiscard]] Hit closest_hit(const Ray& ray) const noexcept;
+    [[nodiscard]] bool occluded(const Ray& ray) const noexcept;
+    [[nodiscard]] std::size_t memory_bytes() const { return 0; }
+
+private:
+    std::shared_ptr<const Geometry> geometry_;
+    float magnitude_;
+};
+
+}  // namespace glint

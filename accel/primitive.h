@@ -1,0 +1,253 @@
+// Ray against one primitive: the only arithmetic that decides a hit. Every accelerator ends here, so all agree to the bit.
+// Knows no accelerator. Invariant: a reported t lies in (0, t_max] and inside the ray's interval through the primitive's
+// padded bounds (slab_interval below), so that a box test by the same arithmetic can never cull a hit.
+// Triangles are decided in float, watertight, with a double fallback; all other primitives in double.
+#pragma once
+
+#include "accel/geometry.h"
+#include "accel/ray.h"
+
+namespace glint {
+
+// A ray with what every test derives from it, computed once per query.
+struct PreparedRay {
+    glm::vec3 origin, direction;
+    float t_max;
+    // Slab tests: t = plane * reciprocal - offset; the offsets push the interval outwards by the rounding error (below).
+    glm::vec3 reciprocal, near_offset, far_offset;
+    // Watertight triangles: the axes, permuted so that |direction[kz]| is largest, and the shear that maps the ray to +z.
+    int kx, ky, kz;
+    float shear_x, shear_y, shear_z;
+    bool usable;  // false for a non-finite or zero direction: such a ray hits nothing
+
+    // magnitude: the largest absolute coordinate of the geometry the ray will meet.
+    PreparedRay(const Ray& ray, float magnitude) noexcept;
+};
+
+struct Interval {
+    float near, far;
+    [[nodiscard]] bool empty() const { return !(near <= far); }
+};
+
+inline PreparedRay::PreparedRay(const Ray& ray, float magnitude) noexcept
+    : origin(ray.origin), direction(ray.direction), t_max(ray.t_max) {
+    const glm::vec3 a = glm::abs(direction);
+    kz = a.x >= a.y ? (a.x >= a.z ? 0 : 2) : (a.y >= a.z ? 1 : 2);
+    kx = kz == 2 ? 0 : kz + 1;
+    ky = kx == 2 ? 0 : kx + 1;
+    const float largest = a[kz];
+    const glm::vec3 sum = origin + direction;
+    usable = std::isfinite(sum.x + sum.y + sum.z) && largest > 0.0f && t_max > 0.0f;
+    if (!usable) {
+        reciprocal = near_offset = far_offset = glm::vec3(0.0f);
+        shear_x = shear_y = shear_z = 0.0f;
+        return;
+    }
+    shear_x = direction[kx] / direction[kz];
+    shear_y = direction[ky] / direction[kz];
+    shear_z = 1.0f / direction[kz];
+    // A zero component would give 0 * inf = NaN. 2^-40 of the largest moves the ray by less than 2^-40 of the scene
+    // inside its bounds, far below the padding.
+    const float smallest = largest * 0x1p-40f;
+    // The computed hit strays from the exact ray by a few rounding errors of numbers as large as origin and geometry:
+    // vertex - origin (1), shear (2), edge functions (2), slab arithmetic (3) units of 2^-24; 16 bounds their sum.
+    const float size = std::max(std::max(std::abs(origin.x), std::abs(origin.y)), std::abs(origin.z)) + magnitude;
+    const float padding = 16.0f * 0x1p-24f * size;
+    for (int i = 0; i < 3; ++i) {
+        const float d = a[i] >= smallest ? direction[i] : std::copysign(smallest, direction[i]);
+        reciprocal[i] = 1.0f / d;
+        const float slack = padding * std::abs(reciprocal[i]);
+        const float shift = origin[i] * reciprocal[i];
+        near_offset[i] = shift + slack;
+        far_offset[i] = shift - slack;
+    }
+}
+
+// The ray parameters between which the ray may be inside `box`, pushed outwards. Monotone in the box: a larger box gives
+// a larger interval, bit for bit, because every operation rounds monotonically.
+inline Interval slab_interval(const PreparedRay& ray, const Aabb& box) noexcept {
+    Interval interval{-kInfinity, kInfinity};
+    for (int i = 0; i < 3; ++i) {
+        const bool forward = ray.reciprocal[i] >= 0.0f;
+        const float near = (forward ? box.lo[i] : box.hi[i]) * ray.reciprocal[i] - ray.near_offset[i];
+        const float far = (forward ? box.hi[i] : box.lo[i]) * ray.reciprocal[i] - ray.far_offset[i];
+        // Written so that a NaN (overflow only) leaves the interval as it is: conservative.
+        interval.near = near > interval.near ? near : interval.near;
+        interval.far = far < interval.far ? far : interval.far;
+    }
+    return interval;
+}
+
+// The scaled barycentric coordinates of the sheared triangle (its projection along the ray), in float or double.
+template <class Real>
+struct EdgeFunctions {
+    Real u, v, w;
+    [[nodiscard]] bool any_zero() const { return u == 0 || v == 0 || w == 0; }
+    [[nodiscard]] bool mixed_signs() const { return (u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0); }
+};
+
+struct TriangleHit {
+    float t, u, v;
+};
+
+// Watertight: a ray that meets an edge or vertex shared by triangles hits at least one of them, because the sign of an
+// edge function depends on the edge alone (Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection").
+// Both faces are hit; a ray in the triangle's plane misses. Returns false for a miss.
+inline bool intersect_triangle(const PreparedRay& ray, glm::vec3 v0, glm::vec3 v1, glm::vec3 v2, float t_limit,
+                               TriangleHit& hit) noexcept {
+    const glm::vec3 a = v0 - ray.origin, b = v1 - ray.origin, c = v2 - ray.origin;
+    const float ax = a[ray.kx] - ray.shear_x * a[ray.kz], ay = a[ray.ky] - ray.shear_y * a[ray.kz];
+    const float bx = b[ray.kx] - ray.shear_x * b[ray.kz], by = b[ray.ky] - ray.shear_y * b[ray.kz];
+    const float cx = c[ray.kx] - ray.shear_x * c[ray.kz], cy = c[ray.ky] - ray.shear_y * c[ray.kz];
+    EdgeFunctions<float> e{cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
+    if (e.any_zero()) {
+        // Two float products may cancel to 0 though the exact difference is not; products of floats are exact in double.
+        const EdgeFunctions<double> d{static_cast<double>(cx) * by - static_cast<double>(cy) * bx,
+                                      static_cast<double>(ax) * cy - static_cast<double>(ay) * cx,
+                                      static_cast<double>(bx) * ay - static_cast<double>(by) * ax};
+        if (d.mixed_signs()) return false;
+        e = {static_cast<float>(d.u), static_cast<float>(d.v), static_cast<float>(d.w)};
+    } else if (e.mixed_signs()) {
+        return false;
+    }
+    const float det = e.u + e.v + e.w;
+    if (!(det != 0.0f)) return false;  // the ray lies in the plane, or NaN
+    const float inverse = 1.0f / det;
+    float t = (((e.u * a[ray.kz] + e.v * b[ray.kz]) + e.w * c[ray.kz]) * ray.shear_z) * inverse;
+    // A needle seen edge-on leaves t badly conditioned. It cannot lie outside the triangle's own bounds, so it is
+    // brought back there; this is also what makes culling by boxes exact.
+    Aabb box;
+    box.grow(v0); box.grow(v1); box.grow(v2);
+    const Interval inside = slab_interval(ray, box);
+    if (inside.empty()) return false;
+    t = t < inside.near ? inside.near : t > inside.far ? inside.far : t;
+    if (!(t > 0.0f && t <= t_limit)) return false;
+    hit = {t, e.v * inverse, e.w * inverse};
+    return true;
+}
+
+// The first root of a pair that lies in (0, limit] once rounded to float; 0 when neither does.
+inline float first_root(double t0, double t1, float limit) noexcept {
+    const float near = static_cast<float>(t0), far = static_cast<float>(t1);
+    if (near > 0.0f && near <= limit) return near;
+    if (far > 0.0f && far <= limit) return far;
+    return 0.0f;
+}
+
+// Roots in double by the perpendicular form of the discriminant and without cancellation (Haines, Günther &
+// Akenine-Möller 2019, "Precision Improvements for Ray/Sphere Intersection"). Returns t, or 0 for a miss.
+inline float intersect_sphere(const PreparedRay& ray, const Sphere& sphere, float t_limit) noexcept {
+    const glm::dvec3 f = glm::dvec3(ray.origin) - glm::dvec3(sphere.center);
+    const glm::dvec3 d(ray.direction);
+    const double r = sphere.radius;
+    const double a = glm::dot(d, d);
+    const double b = -glm::dot(f, d);
+    const glm::dvec3 nearest = f + (b / a) * d;
+    const double discriminant = r * r - glm::dot(nearest, nearest);
+    if (!(discriminant >= 0.0)) return 0.0f;
+    const double q = b + std::copysign(std::sqrt(a * discriminant), b);
+    const double c = glm::dot(f, f) - r * r;
+    // q = 0 only where the ray starts on the sphere and touches it there: no hit.
+    if (q == 0.0) return 0.0f;
+    const double t0 = c / q, t1 = q / a;
+    return first_root(std::min(t0, t1), std::max(t0, t1), t_limit);
+}
+
+// Slabs in double (Kay & Kajiya 1986); a zero direction constrains by position alone, the boundary counts as inside.
+// face: 0..5 = -x +x -y +y -z +z. Returns t, or 0 for a miss.
+inline float intersect_box(const PreparedRay& ray, const Box& box, float t_limit, int& face) noexcept {
+    double near = -static_cast<double>(kInfinity), far = static_cast<double>(kInfinity);
+    int near_face = 0, far_face = 0;
+    for (int i = 0; i < 3; ++i) {
+        const double o = ray.origin[i], d = ray.direction[i], lo = box.lo[i], hi = box.hi[i];
+        if (d == 0.0) {
+            if (o < lo || o > hi) return 0.0f;
+            continue;
+        }
+        const double t_lo = (lo - o) / d, t_hi = (hi - o) / d;
+        const int enter = d > 0.0 ? 2 * i : 2 * i + 1;
+        if (std::min(t_lo, t_hi) > near) near = std::min(t_lo, t_hi), near_face = enter;
+        if (std::max(t_lo, t_hi) < far) far = std::max(t_lo, t_hi), far_face = enter ^ 1;
+    }
+    if (!(near <= far)) return 0.0f;
+    const float t = first_root(near, far, t_limit);
+    face = t == static_cast<float>(near) ? near_face : far_face;
+    return t;
+}
+
+// Lateral surface of a truncated cone or cylinder, in double, solved from the ray's point nearest to the base so that
+// distance does not cancel. Returns t, or 0 for a miss.
+inline float intersect_cone(const PreparedRay& ray, const Cone& cone, float t_limit) noexcept {
+    const glm::dvec3 d(ray.direction), base(cone.base);
+    const glm::dvec3 axis = glm::dvec3(cone.apex) - base;
+    const double h2 = glm::dot(axis, axis);
+    const double shift = glm::dot(base - glm::dvec3(ray.origin), d) / glm::dot(d, d);
+    const glm::dvec3 f = (glm::dvec3(ray.origin) - base) + shift * d;
+    // Height along the axis (0 base, 1 apex) and radius there are linear in t.
+    const double s0 = glm::dot(f, axis) / h2, s1 = glm::dot(d, axis) / h2;
+    const double slope = static_cast<double>(cone.apex_radius) - static_cast<double>(cone.base_radius);
+    const double r0 = cone.base_radius + slope * s0, r1 = slope * s1;
+    const glm::dvec3 p0 = f - s0 * axis, p1 = d - s1 * axis;
+    const double a = glm::dot(p1, p1) - r1 * r1;
+    const double b = -(glm::dot(p0, p1) - r0 * r1);
+    const double c = glm::dot(p0, p0) - r0 * r0;
+    const double discriminant = b * b - a * c;
+    if (!(discriminant >= 0.0)) return 0.0f;
+    const double q = b + std::copysign(std::sqrt(discriminant), b);
+    double roots[2] = {c / q, q / a};  // a = 0 (parallel to the surface) leaves one finite root
+    if (!(roots[0] <= roots[1])) std::swap(roots[0], roots[1]);
+    for (const double root : roots) {
+        const double height = s0 + s1 * root;
+        const double t_exact = root + shift;
+        if (!std::isfinite(t_exact)) continue;
+        const float t = static_cast<float>(t_exact);
+        const bool on_cone = height >= 0.0 && height <= 1.0 && r0 + r1 * root >= 0.0;
+        if (on_cone && t > 0.0f && t <= t_limit) return t;
+    }
+    return 0.0f;
+}
+
+// Returns t, or 0 for a miss; a parallel ray misses, in the plane or not.
+inline float intersect_plane(const PreparedRay& ray, const Plane& plane, float t_limit) noexcept {
+    const double slope = glm::dot(plane.normal, glm::dvec3(ray.direction));
+    if (slope == 0.0) return 0.0f;
+    const auto t = static_cast<float>(-(glm::dot(plane.normal, glm::dvec3(ray.origin)) + plane.offset) / slope);
+    return t > 0.0f && t <= t_limit && t < kInfinity ? t : 0.0f;
+}
+
+// Tests primitive `id` and keeps the nearer hit in `best`; at equal t the lower id stays.
+inline void intersect(const PreparedRay& ray, const Geometry& g, PrimitiveId id, Hit& best) noexcept {
+    const std::uint32_t i = index_of(id);
+    Hit hit;
+    hit.primitive = id;
+    switch (kind_of(id)) {
+        case PrimitiveKind::triangle: {
+            const auto& index = g.triangles[i];
+            TriangleHit h{};
+            if (!intersect_triangle(ray, g.vertices[index[0]], g.vertices[index[1]], g.vertices[index[2]], best.t, h)) return;
+            hit.t = h.t; hit.u = h.u; hit.v = h.v;
+            break;
+        }
+        case PrimitiveKind::sphere: hit.t = intersect_sphere(ray, g.spheres[i], best.t); break;
+        case PrimitiveKind::box: {
+            int face = 0;
+            hit.t = intersect_box(ray, g.boxes[i], best.t, face);
+            hit.u = static_cast<float>(face);
+            break;
+        }
+        case PrimitiveKind::cone: hit.t = intersect_cone(ray, g.cones[i], best.t); break;
+        case PrimitiveKind::plane: hit.t = intersect_plane(ray, g.planes[i], best.t); break;
+    }
+    if (hit.t > 0.0f && (hit.t < best.t || id < best.primitive)) best = hit;
+}
+
+// Starts a query: the ray's t_max as the distance to beat, and the infinite planes tested.
+inline Hit begin_query(const PreparedRay& ray, const Geometry& g) noexcept {
+    Hit best;
+    best.t = ray.t_max;
+    if (!ray.usable) return best;
+    for (std::uint32_t i = 0; i < g.planes.size(); ++i) intersect(ray, g, make_id(PrimitiveKind::plane, i), best);
+    return best;
+}
+
+}  // namespace glint

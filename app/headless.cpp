@@ -1,0 +1,220 @@
+#include "app/headless.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/accelerator_cache.h"
+#include "core/image.h"
+#include "core/renderer.h"
+
+namespace glint {
+namespace {
+
+std::atomic<bool> stop_requested{false};
+std::atomic<int> stop_signal{0};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+extern "C" void request_stop(int signal) {
+    stop_signal = signal;
+    stop_requested = true;
+}
+
+// {scene} {accel} {spp} in a file name.
+std::string filled_in(std::string name, const Job& job) {
+    std::string scene = job.scene->name.substr(job.scene->name.find_last_of('/') + 1);
+    for (char& c : scene) {
+        if (c == ':' || c == ',' || c == '=') c = '_';
+    }
+    const std::pair<std::string, std::string> fields[] = {
+        {"{scene}", scene},
+        {"{accel}", std::string(kAcceleratorNames[static_cast<std::size_t>(job.accelerator)])},
+        {"{spp}", std::to_string(job.spp)}};
+    for (const auto& [field, value] : fields) {
+        for (std::size_t at = name.find(field); at != std::string::npos; at = name.find(field, at + value.size())) {
+            name.replace(at, field.size(), value);
+        }
+    }
+    return name;
+}
+
+enum class Format { png, pfm };
+
+Format format_of(const std::string& output) {
+    if (output == "-" || output.ends_with(".png") || output.ends_with(".PNG")) return Format::png;
+    if (output.ends_with(".pfm") || output.ends_with(".PFM")) return Format::pfm;
+    throw UsageError(fmt::format("-o {}: the ending must be .png or .pfm", output));
+}
+
+void apply_crop(Frame& frame, const Options& o) {
+    if (!o.crop) return;
+    const auto [x0, x1, y0, y1] = *o.crop;
+    if (x0 >= x1 || y0 >= y1 || x1 > frame.width || y1 > frame.height) {
+        throw UsageError(fmt::format("--crop: {},{},{},{} is no window of a {}x{} picture", x0, x1, y0, y1, frame.width, frame.height));
+    }
+    frame.x0 = x0; frame.x1 = x1; frame.y0 = y0; frame.y1 = y1;
+}
+
+// Progress on stderr: redrawn on a terminal, one line every five seconds elsewhere.
+class ProgressLine {
+public:
+    ProgressLine(bool quiet, int spp) : terminal_(isatty(STDERR_FILENO) != 0), quiet_(quiet), spp_(spp) {}
+    void show(const Progress& p) {
+        if (quiet_ || p.seconds < next_) return;
+        next_ = p.seconds + (terminal_ ? 0.2 : 5.0);
+        if (p.seconds < 1.0) return;
+        std::fputs(fmt::format("{}{}-{} of {} spp, {:.1f} s, {:.2f} Mrays/s{}", terminal_ ? "\r" : "", p.spp_min, p.spp_max, spp_,
+                               p.seconds, static_cast<double>(p.rays.total()) / p.seconds * 1e-6, terminal_ ? "  " : "\n").c_str(), stderr);
+        shown_ = true;
+    }
+    void end() const {
+        if (terminal_ && shown_) std::fputs("\n", stderr);
+    }
+
+private:
+    bool terminal_, quiet_, shown_ = false;
+    int spp_;
+    double next_ = 0.0;
+};
+
+nlohmann::json stats(const Job& job, const Options& o, const Progress& p, double build_seconds, double load_seconds,
+                     std::size_t accelerator_bytes, double error, std::string_view stopped_by) {
+    const double seconds = std::max(p.seconds, 1e-9);
+    const RayCounts& r = p.rays;
+    return {{"scene", job.scene->name},
+            {"accelerator", kAcceleratorNames[static_cast<std::size_t>(job.accelerator)]},
+            {"width", job.width},
+            {"height", job.height},
+            {"spp", job.spp},
+            {"spp_min", p.spp_min},
+            {"spp_max", p.spp_max},
+            {"threads", job.threads},
+            {"seed", o.settings.seed},
+            {"sampler", kSamplerNames[static_cast<std::size_t>(job.settings.sampler)]},
+            {"stopped_by", stopped_by},
+            {"seconds", p.seconds},
+            {"load_ms", load_seconds * 1e3},
+            {"build_ms", build_seconds * 1e3},
+            {"accelerator_bytes", accelerator_bytes},
+            {"primitives", job.scene->geometry->bounded_count() + job.scene->geometry->planes.size()},
+            {"rays", {{"camera", r.camera}, {"shadow", r.shadow}, {"reflection", r.reflection}, {"refraction", r.refraction}}},
+            {"mrays_per_s", static_cast<double>(r.total()) / seconds * 1e-6},
+            {"non_finite_samples", r.non_finite},
+            {"depth_cut_branches", r.depth_cut},
+            {"depth_cut_weight", r.depth_cut_weight},
+            {"relative_standard_error", error},
+            {"isa", "baseline"}};
+}
+
+}  // namespace
+
+void print_warnings(const Scene& scene, const Options& options) {
+    if (options.quiet) return;
+    constexpr std::size_t kShown = 5;
+    const std::size_t shown = options.verbose ? scene.warnings.size() : std::min(kShown, scene.warnings.size());
+    for (std::size_t i = 0; i < shown; ++i) fmt::print(stderr, "{}\n", scene.warnings[i]);
+    if (shown < scene.warnings.size()) fmt::print(stderr, "and {} more warnings (--verbose shows them)\n", scene.warnings.size() - shown);
+}
+
+int run_render(const Options& o) {
+    const Format format = format_of(o.output);
+    const auto start = std::chrono::steady_clock::now();
+    const Job job = prepare_job(o, o.arguments.empty() ? default_scene() : o.arguments.front());
+    const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    print_warnings(*job.scene, o);
+    Frame frame{job.scene, nullptr, job.camera, job.settings, job.width, job.height, 0, 0, job.width, job.height, job.spp};
+    apply_crop(frame, o);
+
+    std::signal(SIGINT, request_stop);
+    std::signal(SIGTERM, request_stop);
+    AcceleratorCache cache(job.scene);
+    frame.accelerator = cache.wait(job.accelerator);
+    const std::size_t accelerator_bytes = memory_bytes(*frame.accelerator);
+
+    Renderer renderer(job.threads, false);
+    renderer.restart(frame);
+    ProgressLine line(o.quiet, job.spp);
+    Progress p = renderer.progress();
+    while (!p.finished && p.seconds < o.time && !stop_requested) {
+        renderer.wait(std::min(o.time, p.seconds + 0.25), &stop_requested);
+        p = renderer.progress();
+        line.show(p);
+    }
+    line.end();
+
+    Image image;
+    renderer.resolve(image);
+    const std::string bytes = format == Format::pfm ? encode_pfm(image) : encode_png(to_display(image, job.display), job.display.transfer);
+    const bool to_stdout = o.output == "-";
+    if (to_stdout) {
+        if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0) {
+            throw ImageError("stdout: cannot write");
+        }
+    } else {
+        write_file_atomically(filled_in(o.output, job), bytes);
+    }
+    const std::string_view stopped_by = stop_requested ? "signal" : p.finished ? "spp" : "time";
+    if (o.stats_json) {
+        const auto json = stats(job, o, p, cache.build_seconds(job.accelerator), load_seconds, accelerator_bytes,
+                                renderer.relative_standard_error(), stopped_by);
+        (to_stdout ? std::cerr : std::cout) << json.dump(2) << "\n";
+    }
+    if (p.rays.non_finite > 0 && !o.quiet) {
+        fmt::print(stderr, "{} non-finite sample{} left out\n", p.rays.non_finite, p.rays.non_finite == 1 ? " was" : "s were");
+    }
+    if (stop_requested) return 128 + stop_signal;
+    return o.strict && p.rays.non_finite > 0 ? 4 : 0;
+}
+
+int run_compare(const Options& o) {
+    const Image a = read_image(o.arguments[0]), b = read_image(o.arguments[1]);
+    const ImageDifference d = difference(a, b);
+    fmt::print("rmse {:.6g}\nmax {:.6g}\ndiffering_pixels {} of {}\n", d.rmse, d.max, d.differing, d.pixels);
+    return d.rmse <= o.threshold ? 0 : 1;
+}
+
+int run_info(const Options& o) {
+    const std::shared_ptr<const Scene> scene = load_scene(o.arguments.front());
+    const Geometry& g = *scene->geometry;
+    fmt::print("scene {}\n", scene->name);
+    fmt::print("triangles {}\nspheres {}\nboxes {}\ncones {}\nplanes {}\n", g.triangles.size(), g.spheres.size(), g.boxes.size(),
+               g.cones.size(), g.planes.size());
+    fmt::print("vertices {}\nmaterials {}\nlights {}\ncameras {}\n", g.vertices.size(), scene->materials.size(), scene->lights.size(),
+               scene->cameras.size());
+    const Aabb box = g.bounds();
+    if (!box.empty()) {
+        fmt::print("bounds {:g} {:g} {:g} to {:g} {:g} {:g}\n", box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z);
+    }
+    fmt::print("resolution {}x{}\nspp {}\n", scene->width, scene->height, scene->spp > 0 ? std::to_string(scene->spp) : "not given");
+    std::string features;
+    for (std::size_t i = 0; i < kFeatureNames.size(); ++i) {
+        if (features_of(*scene).has(static_cast<Feature>(i))) features += fmt::format(" {}", kFeatureNames[i]);
+    }
+    fmt::print("features{}\n", features);
+    const AcceleratorKind kind = automatic_accelerator(*scene);
+    fmt::print("accelerator {} ({} bounded primitives)\n", kAcceleratorNames[static_cast<std::size_t>(kind)], g.bounded_count());
+    for (const std::string& w : scene->warnings) fmt::print("warning {}\n", w);
+    return 0;
+}
+
+int run_list() {
+    fmt::print("Built-in scenes\n");
+    for (const BuiltinScene& s : builtin_scenes()) fmt::print("  builtin:{:<12} {:<28} {}\n", s.name, s.parameters, s.description);
+    fmt::print("Accelerators\n  auto");
+    for (const auto name : kAcceleratorNames) fmt::print(" {}", name);
+    fmt::print("\nSamplers\n ");
+    for (const auto name : kSamplerNames) fmt::print(" {}", name);
+    fmt::print("\nFeatures\n ");
+    for (const auto name : kFeatureNames) fmt::print(" {}", name);
+    fmt::print("\n");
+    return 0;
+}
+
+}  // namespace glint

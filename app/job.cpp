@@ -1,0 +1,87 @@
+// Where options meet the scene: see Job in options.h.
+#include <sched.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "app/options.h"
+#include "core/accelerator_cache.h"
+
+namespace glint {
+namespace {
+
+CameraPose chosen_camera(const Options& o, const Scene& scene) {
+    const auto index = static_cast<std::size_t>(o.camera_index);
+    if (index >= scene.cameras.size()) {
+        throw UsageError(fmt::format("--camera-index: {} is too large; {} has {} camera{}", o.camera_index, scene.name,
+                                     scene.cameras.size(), scene.cameras.size() == 1 ? "" : "s"));
+    }
+    CameraPose c = scene.cameras[index];
+    if (o.camera_position) c.eye = *o.camera_position;
+    if (o.camera_focal_point) c.target = *o.camera_focal_point;
+    if (o.camera_view_up) c.up = *o.camera_view_up;
+    if (o.view_angle) c.view_angle = *o.view_angle;
+    if (c.eye == c.target) throw UsageError("the camera's position and focal point are the same");
+    if (o.aperture) c.lens_radius = *o.aperture;
+    if (o.focus) c.focus_distance = *o.focus;
+    return c;
+}
+
+// A quota of a container, in whole cores (at least one); the number of cores when there is none.
+int quota_threads(int cores) {
+    std::ifstream in("/sys/fs/cgroup/cpu.max");
+    double quota = 0.0, period = 0.0;
+    if (!(in >> quota >> period) || !(quota > 0.0) || !(period > 0.0)) return cores;
+    return std::clamp(static_cast<int>(quota / period + 0.5), 1, cores);
+}
+
+}  // namespace
+
+int available_threads() {
+    cpu_set_t mask;
+    CPU_ZERO(&mask);
+    const int cores = sched_getaffinity(0, sizeof mask, &mask) == 0 ? std::max(1, CPU_COUNT(&mask)) : 1;
+    return quota_threads(cores);
+}
+
+std::string default_scene() {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    const fs::path binary = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+    for (const fs::path& folder : {binary / "assets", binary / "../share/glint/assets", fs::path(GLINT_ASSETS), fs::path(GLINT_INSTALLED_ASSETS)}) {
+        const fs::path scene = folder / "showpiece.p3f";
+        if (fs::is_regular_file(scene, ignored)) return scene.lexically_normal().string();
+    }
+    return "builtin:balls,level=3";
+}
+
+Job prepare_job(const Options& o, const std::string& scene) {
+    LoadOptions load;
+    load.load_environment = o.settings.background != Background::color;
+    load.environment = o.environment;
+    Job job;
+    job.scene = load_scene(scene, load);
+    const Scene& s = *job.scene;
+    job.settings = o.settings;
+    job.settings.features = features_of(s);
+    bool whitted = false;
+    if (!o.features.empty()) job.settings.features = edit_features(o.features, job.settings.features, whitted);
+    job.display = {o.exposure, o.transfer.value_or(s.transfer)};
+    job.camera = chosen_camera(o, s);
+    job.width = o.width > 0 ? o.width : s.width;
+    job.height = o.height > 0 ? o.height : s.height;
+    const int default_spp = o.command == Command::view ? 4096 : s.spp > 0 ? s.spp : 64;
+    job.spp = o.spp > 0 ? o.spp : whitted ? 1 : default_spp;
+    const int cores = available_threads();
+    job.threads = o.threads > 0 ? o.threads : o.threads < 0 ? std::max(1, cores - 1) : cores;
+
+    const auto named = o.accelerator_given ? o.accelerator : accelerator_named(s.accelerator);
+    job.accelerator_is_auto = !named.has_value();
+    job.accelerator = named.value_or(automatic_accelerator(s));
+    return job;
+}
+
+}  // namespace glint

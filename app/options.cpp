@@ -1,0 +1,309 @@
+#include "app/options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include "app/keys.h"
+
+namespace glint {
+namespace {
+
+constexpr std::array<std::string_view, 5> kCommandNames{"view", "render", "compare", "info", "list"};
+constexpr int kMaxSide = 65535;
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
+constexpr int kMaxSamples = 1 << 30;
+
+constexpr std::string_view kUsage =
+    "glint: a progressive CPU ray tracer you fly through, and a headless renderer with the same bits.\n\n"
+    "  glint [view] [SCENE] [OPTION...]        open the viewer (no SCENE: the showpiece)\n"
+    "  glint render SCENE -o OUT [OPTION...]   render to a .png or .pfm file, without any window\n"
+    "  glint compare A B [--threshold X]       RMSE and largest difference of two pictures\n"
+    "  glint info SCENE                        what a scene holds and which accelerator it gets\n"
+    "  glint list                              built-in scenes, accelerators, samplers, features\n\n"
+    "SCENE is a .p3f, .nff, .gltf or .glb file, or builtin:NAME[,key=value...].\n";
+
+[[noreturn]] void refuse(std::string_view option, std::string_view value, std::string_view wanted) {
+    throw UsageError(fmt::format("{}: '{}' is not {}", option, value, wanted));
+}
+
+template <class T>
+T number(std::string_view option, std::string_view text, T least, T most, std::string_view wanted) {
+    T value{};
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    // Written so that a NaN is refused.
+    if (error != std::errc() || stop != end || !(value >= least && value <= most)) refuse(option, text, wanted);
+    return value;
+}
+
+std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
+    std::vector<std::string_view> parts;
+    for (std::size_t begin = 0;;) {
+        const std::size_t end = text.find_first_of(separators, begin);
+        parts.push_back(text.substr(begin, end == std::string_view::npos ? end : end - begin));
+        if (end == std::string_view::npos) return parts;
+        begin = end + 1;
+    }
+}
+
+glm::vec3 vector3(std::string_view option, std::string_view text) {
+    const auto parts = split(text, ",");
+    if (parts.size() != 3) refuse(option, text, "three numbers X,Y,Z");
+    glm::vec3 v;
+    for (int i = 0; i < 3; ++i) v[i] = number(option, parts[static_cast<std::size_t>(i)], -1e18f, 1e18f, "three numbers X,Y,Z");
+    return v;
+}
+
+template <std::size_t N>
+std::size_t choice(std::string_view option, std::string_view text, const std::array<std::string_view, N>& names) {
+    const auto found = std::find(names.begin(), names.end(), text);
+    if (found == names.end()) {
+        throw UsageError(fmt::format("{}: unknown value '{}'{}", option, text,
+                                     did_you_mean(text, std::vector<std::string>(names.begin(), names.end()))));
+    }
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+// One CLI::App that fills `o`; each value is checked where it is declared.
+class Parser {
+public:
+    explicit Parser(Options& options) : o_(options) {
+        app_.set_version_flag("--version", "glint " GLINT_VERSION);
+        app_.allow_extras();
+    }
+
+    void render_options() {
+        text("--resolution", "WxH", "image size; default the scene's", [this](std::string_view n, std::string_view v) {
+            const auto parts = split(v, "x,");
+            if (parts.size() != 2) refuse(n, v, "a size WxH");
+            o_.width = number(n, parts[0], 1, kMaxSide, "a size from 1x1 to 65535x65535");
+            o_.height = number(n, parts[1], 1, kMaxSide, "a size from 1x1 to 65535x65535");
+            if (std::int64_t{o_.width} * o_.height > kMaxPixels) refuse(n, v, "a size of at most 2^28 pixels");
+        });
+        text("--spp", "N", "samples a pixel; default the scene's, else 64 (viewer: 4096)",
+             [this](auto n, auto v) { o_.spp = number(n, v, 1, kMaxSamples, "a number of samples (1 or more)"); });
+        text("--threads", "N", "0 = all that the process may use, -1 = all but one",
+             [this](auto n, auto v) { o_.threads = number(n, v, -1, 1024, "a number of threads (-1 to 1024)"); });
+        text("--seed", "N", "same seed, same bytes", [this](auto n, auto v) {
+            o_.settings.seed = number(n, v, std::uint64_t{0}, ~std::uint64_t{0}, "a whole number of at most 64 bits");
+        });
+        text("--accel", "auto|none|grid|bvh", "accelerator; all give the same picture", [this](auto n, auto v) {
+            constexpr std::array<std::string_view, 4> names{"auto", "none", "grid", "bvh"};
+            const std::size_t i = choice(n, v, names);
+            o_.accelerator_given = true;
+            o_.accelerator = i == 0 ? std::nullopt : std::optional(static_cast<AcceleratorKind>(i - 1));
+        });
+        text("--features", "LIST", "of aa,dof,soft,fuzzy,specular,shadows,reflections,refractions; a plain list replaces what the "
+             "scene starts with, +name and -name edit it; also all, whitted (one centred ray, spp 1)",
+             [this](auto, auto v) { o_.features = v; });
+        text("--fresnel", "exact|schlick", "reflectance of glass", [this](auto n, auto v) {
+            o_.settings.fresnel = static_cast<Fresnel>(choice(n, v, std::array<std::string_view, 2>{"exact", "schlick"}));
+        });
+        text("--sampler", "NAME", "sobol, jittered, random or regular",
+             [this](auto n, auto v) { o_.settings.sampler = static_cast<SamplerKind>(choice(n, v, kSamplerNames)); });
+        text("--depth", "N", "bounces after the camera ray; default 8",
+             [this](auto n, auto v) { o_.settings.depth = number(n, v, 0, 100000, "a number of bounces (0 to 100000)"); });
+        length("--light-size", "half side of the square around point lights, scene units",
+               [this](float x) { o_.settings.light_size = x; });
+        length("--aperture", "lens radius, scene units", [this](float x) { o_.aperture = x; });
+        length("--focus", "focus distance along the axis, scene units", [this](float x) { o_.focus = x; });
+        length("--roughness", "fuzz radius of every mirror", [this](float x) { o_.settings.roughness = x; });
+    }
+
+    void camera_options() {
+        text("--camera-position", "X,Y,Z", "where the eye is", [this](auto n, auto v) { o_.camera_position = vector3(n, v); });
+        text("--camera-focal-point", "X,Y,Z", "what it looks at", [this](auto n, auto v) { o_.camera_focal_point = vector3(n, v); });
+        text("--camera-view-up", "X,Y,Z", "up in the picture", [this](auto n, auto v) {
+            o_.camera_view_up = vector3(n, v);
+            if (*o_.camera_view_up == glm::vec3(0.0f)) refuse(n, v, "a direction");
+        });
+        text("--camera-view-angle", "DEG", "vertical field of view", [this](auto n, auto v) {
+            o_.view_angle = number(n, v, 0.001f, 179.0f, "an angle from 0.001 to 179 degrees");
+        });
+        text("--camera-index", "N", "the scene's camera to use, from 0",
+             [this](auto n, auto v) { o_.camera_index = number(n, v, 0, 1 << 20, "a camera's number"); });
+        text("--background", "scene|color|environment", "what rays see that hit nothing", [this](auto n, auto v) {
+            o_.settings.background =
+                static_cast<Background>(choice(n, v, std::array<std::string_view, 3>{"scene", "color", "environment"}));
+        });
+        text("--environment,--hdri-file", "DIR", "folder of six pictures right, left, top, bottom, front, back",
+             [this](auto, auto v) { o_.environment = v; });
+        text("--exposure", "EV", "stops brighter (or darker) on display; never touches PFM",
+             [this](auto n, auto v) { o_.exposure = number(n, v, -64.0f, 64.0f, "a number of stops"); });
+        text("--transfer", "linear|srgb", "display transfer; default the scene's", [this](auto n, auto v) {
+            o_.transfer = static_cast<Transfer>(choice(n, v, std::array<std::string_view, 2>{"linear", "srgb"}));
+        });
+        app_.add_flag("--quiet", o_.quiet, "no progress, no warnings");
+        app_.add_flag("--verbose", o_.verbose, "every warning, and what was chosen");
+    }
+
+    void output_options() {
+        text("-o,--output", "FILE", "a .png or .pfm file, - for PNG on stdout; {scene} {accel} {spp} are filled in",
+             [this](auto, auto v) { o_.output = v; });
+        text("--time", "S", "seconds to render at most", [this](auto n, auto v) {
+            o_.time = number(n, v, 0.0, 1e9, "a number of seconds");
+        });
+        text("--crop", "x0,x1,y0,y1", "a window, counted from the top left, x1 and y1 excluded", [this](auto n, auto v) {
+            const auto parts = split(v, ",");
+            if (parts.size() != 4) refuse(n, v, "four numbers x0,x1,y0,y1");
+            o_.crop.emplace();
+            for (std::size_t i = 0; i < 4; ++i) (*o_.crop)[i] = number(n, parts[i], 0, kMaxSide, "four numbers x0,x1,y0,y1");
+        });
+        text("--stats", "json", "one JSON object on stdout (on stderr with -o -)", [this](auto n, auto v) {
+            (void)choice(n, v, std::array<std::string_view, 1>{"json"});
+            o_.stats_json = true;
+        });
+        app_.add_flag("--strict", o_.strict, "non-finite samples are an error (exit 4)");
+    }
+
+    void compare_options() {
+        text("--threshold", "X", "largest RMSE that counts as equal; default 0",
+             [this](auto n, auto v) { o_.threshold = number(n, v, 0.0, 1e18, "a number of at least 0"); });
+    }
+
+    // False when only help or version was asked for.
+    bool parse(const std::vector<std::string>& words) {
+        std::vector<std::string> reversed(words.rbegin(), words.rend());
+        try {
+            app_.parse(reversed);
+        } catch (const CLI::CallForHelp&) {
+            std::cout << kUsage << "\nOptions of " << kCommandNames[static_cast<std::size_t>(o_.command)] << ":\n"
+                      << option_help();
+            if (o_.command == Command::view) std::cout << "\nKeys:\n" << keys_help();
+            return false;
+        } catch (const CLI::CallForVersion&) {
+            std::cout << "glint " GLINT_VERSION "\n";
+            return false;
+        } catch (const CLI::ParseError& e) {
+            std::string reason = e.what();
+            std::replace(reason.begin(), reason.end(), '\n', ' ');
+            throw UsageError(reason);
+        }
+        for (const std::string& word : app_.remaining()) {
+            if (word.size() > 1 && word.front() == '-') unknown_option(word.substr(0, word.find('=')));
+            o_.arguments.push_back(word);
+        }
+        return true;
+    }
+
+private:
+    template <class Check>
+    void text(const std::string& names, const std::string& value, const std::string& help, Check check) {
+        const std::string shown = names.substr(0, names.find(','));
+        const std::string name = names.starts_with("-o") ? "--output" : shown;
+        app_.add_option_function<std::string>(names, [check, name](const std::string& v) { check(std::string_view(name), std::string_view(v)); },
+                                              help)
+            ->type_name(value);
+    }
+    template <class Set>
+    void length(const std::string& name, const std::string& help, Set set) {
+        text(name, "X", help, [set](std::string_view n, std::string_view v) { set(number(n, v, 0.0f, 1e18f, "a number of at least 0")); });
+    }
+
+    [[nodiscard]] std::string option_help() const {
+        std::string out;
+        for (const CLI::Option* option : app_.get_options()) {
+            const std::string value = option->get_type_name().empty() ? "" : " " + option->get_type_name();
+            out += fmt::format("  {:<38} {}\n", option->get_name(false, true) + value, option->get_description());
+        }
+        return out;
+    }
+
+    [[noreturn]] void unknown_option(const std::string& word) const {
+        std::vector<std::string> known;
+        for (const CLI::Option* option : app_.get_options()) {
+            for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+        }
+        throw UsageError(fmt::format("unknown option '{}'{}", word, did_you_mean(word, known)));
+    }
+
+    Options& o_;
+    CLI::App app_{"glint"};
+};
+
+}  // namespace
+
+std::string did_you_mean(std::string_view typed, const std::vector<std::string>& known) {
+    std::size_t best = std::max<std::size_t>(2, typed.size() / 3) + 1;
+    std::string name;
+    for (const std::string& k : known) {
+        // Edit distance by Wagner & Fischer (1974), one row at a time.
+        std::vector<std::size_t> row(k.size() + 1);
+        for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+        for (std::size_t i = 0; i < typed.size(); ++i) {
+            std::size_t diagonal = row[0];
+            row[0] = i + 1;
+            for (std::size_t j = 0; j < k.size(); ++j) {
+                const std::size_t replace = diagonal + (typed[i] == k[j] ? 0 : 1);
+                diagonal = row[j + 1];
+                row[j + 1] = std::min({replace, row[j] + 1, row[j + 1] + 1});
+            }
+        }
+        if (row.back() < best) best = row.back(), name = k;
+    }
+    return name.empty() ? "" : fmt::format("; did you mean '{}'?", name);
+}
+
+FeatureSet edit_features(std::string_view list, FeatureSet start, bool& whitted) {
+    FeatureSet set = start;
+    bool replaced = false;
+    for (std::string_view word : split(list, ",")) {
+        const char sign = word.empty() ? '?' : word.front();
+        if (sign == '+' || sign == '-') {
+            word.remove_prefix(1);
+        } else if (!std::exchange(replaced, true)) {
+            set = FeatureSet{};
+        }
+        if (sign != '+' && sign != '-' && (word == "all" || word == "whitted")) {
+            whitted = whitted || word == "whitted";
+            set.bits |= word == "all" ? FeatureSet::all().bits : FeatureSet::whitted().bits;
+            continue;
+        }
+        set.set(static_cast<Feature>(choice("--features", word, kFeatureNames)), sign != '-');
+    }
+    return set;
+}
+
+std::optional<Options> parse_options(const std::vector<std::string>& words) {
+    Options o;
+    std::vector<std::string> rest = words;
+    if (!rest.empty()) {
+        const auto found = std::find(kCommandNames.begin(), kCommandNames.end(), rest.front());
+        if (found != kCommandNames.end()) {
+            o.command = static_cast<Command>(found - kCommandNames.begin());
+            rest.erase(rest.begin());
+        }
+    }
+    Parser parser(o);
+    const bool renders = o.command == Command::view || o.command == Command::render;
+    if (renders) parser.render_options(), parser.camera_options();
+    if (o.command == Command::render) parser.output_options();
+    if (o.command == Command::compare) parser.compare_options();
+    if (!parser.parse(rest)) return std::nullopt;
+
+    const auto expect = [&](std::size_t least, std::size_t most, std::string_view what) {
+        const std::size_t n = o.arguments.size();
+        if (n < least || n > most) {
+            throw UsageError(fmt::format("glint {} takes {}{}", kCommandNames[static_cast<std::size_t>(o.command)], what,
+                                         n > most ? fmt::format(", not also '{}'", o.arguments[most]) : ""));
+        }
+    };
+    switch (o.command) {
+        case Command::view: expect(0, 1, "one scene"); break;
+        case Command::render:
+            expect(0, 1, "one scene");
+            if (o.output.empty()) throw UsageError("glint render needs -o FILE");
+            break;
+        case Command::compare: expect(2, 2, "two pictures"); break;
+        case Command::info: expect(1, 1, "one scene"); break;
+        case Command::list: expect(0, 0, "no arguments"); break;
+    }
+    return o;
+}
+
+}  // namespace glint

@@ -1,0 +1,83 @@
+// The command line, parsed and checked, and what it means once the scene is known.
+// Knows no window, renderer or file format. Errors: UsageError, one line, for main to print (exit 2).
+#pragma once
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "accel/accelerator.h"
+#include "core/scene_io.h"
+#include "core/settings.h"
+
+namespace glint {
+
+class UsageError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+enum class Command { view, render, compare, info, list };
+
+struct Options {
+    Command command = Command::view;
+    std::vector<std::string> arguments;  // scenes, or the two pictures of `compare`
+    std::string output;
+    int width = 0, height = 0;  // 0 = the scene's
+    int spp = 0;                // 0 = not given
+    double time = std::numeric_limits<double>::infinity();  // seconds
+    int threads = 0;            // 0 = all that the process may use, -1 = all but one
+    std::optional<AcceleratorKind> accelerator;  // empty = auto, or what the scene says
+    bool accelerator_given = false;
+    std::string features;       // LIST as typed; empty = not given
+    std::optional<int> depth;
+    RenderSettings settings;    // what is independent of the scene
+    std::optional<float> aperture, focus, view_angle;
+    std::optional<glm::vec3> camera_position, camera_focal_point, camera_view_up;
+    int camera_index = 0;
+    std::string environment;
+    float exposure = 0.0f;
+    std::optional<Transfer> transfer;
+    std::optional<std::array<int, 4>> crop;  // x0, x1, y0, y1 from the top left, upper bounds excluded
+    double threshold = 0.0;     // compare: largest RMSE that still counts as equal
+    bool stats_json = false, quiet = false, verbose = false, strict = false;
+};
+
+// Parses the words after the program's name. Prints help or version itself and returns nothing then.
+[[nodiscard]] std::optional<Options> parse_options(const std::vector<std::string>& words);
+
+// A scene with every choice settled: what the viewer starts from and what `render` renders.
+struct Job {
+    std::shared_ptr<const Scene> scene;
+    RenderSettings settings;
+    DisplaySettings display;
+    CameraPose camera;
+    AcceleratorKind accelerator = AcceleratorKind::bvh;
+    bool accelerator_is_auto = true;
+    int width = 0, height = 0;
+    int spp = 64;
+    int threads = 1;
+};
+
+// Loads the scene and applies the options to it. Throws UsageError or SceneError.
+[[nodiscard]] Job prepare_job(const Options& options, const std::string& scene);
+
+// LIST of --features applied to what the scene starts with: plain names replace the set, +name and -name edit it;
+// `all` and `whitted` are sets. centred_only tells whether `whitted` was among them, which also means one sample.
+[[nodiscard]] FeatureSet edit_features(std::string_view list, FeatureSet start, bool& whitted);
+
+// The threads the process may use: its affinity mask, limited by a cgroup's quota.
+[[nodiscard]] int available_threads();
+
+// The word of `known` closest to `typed`, as "; did you mean 'x'?", or nothing when none is near.
+[[nodiscard]] std::string did_you_mean(std::string_view typed, const std::vector<std::string>& known);
+
+// The scene that a bare `glint` shows, found beside the binary, in the source tree or where it is installed.
+[[nodiscard]] std::string default_scene();
+
+}  // namespace glint

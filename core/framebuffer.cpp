@@ -1,0 +1,83 @@
+#include "core/framebuffer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+// Rejected samples count as never taken.
+glm::vec3 mean(const PixelSum& sum, int samples) {
+    const double n = samples - static_cast<double>(sum.rejected);
+    return n > 0.0 ? glm::vec3(sum.radiance / n) : glm::vec3(0.0f);
+}
+
+}  // namespace
+
+Framebuffer::Framebuffer(TileRect area) : area_(area) {
+    for (int y = area.y0; y < area.y1; y += kTileSize) {
+        for (int x = area.x0; x < area.x1; x += kTileSize) {
+            Tile tile;
+            tile.rect = {x, y, std::min(x + kTileSize, area.x1), std::min(y + kTileSize, area.y1)};
+            tiles_.push_back(std::move(tile));
+        }
+    }
+}
+
+int Framebuffer::samples(std::size_t tile, std::uint64_t generation) const {
+    return tiles_[tile].generation == generation ? tiles_[tile].samples : 0;
+}
+
+void Framebuffer::copy_out(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums) const {
+    const Tile& t = tiles_[tile];
+    if (t.generation == generation) sums = t.sums;
+    else sums.assign(t.rect.pixels(), PixelSum());
+}
+
+void Framebuffer::write_back(std::size_t tile, std::uint64_t generation, const std::vector<PixelSum>& sums, int samples) {
+    Tile& t = tiles_[tile];
+    t.sums = sums;
+    t.samples = samples;
+    t.generation = generation;
+}
+
+void Framebuffer::write_preview(std::size_t tile, std::uint64_t generation, const std::vector<glm::vec3>& blocks) {
+    tiles_[tile].preview = blocks;
+    tiles_[tile].preview_generation = generation;
+}
+
+void Framebuffer::resolve(std::size_t tile, std::uint64_t generation, Image& image) const {
+    const Tile& t = tiles_[tile];
+    const bool sampled = t.generation == generation && t.samples > 0;
+    const bool previewed = t.preview_generation == generation && !t.preview.empty();
+    if (!sampled && !previewed) return;
+    const int blocks = preview_blocks(t.rect.x1 - t.rect.x0);
+    std::size_t i = 0;
+    for (int y = t.rect.y0; y < t.rect.y1; ++y) {
+        for (int x = t.rect.x0; x < t.rect.x1; ++x, ++i) {
+            const auto block = static_cast<std::size_t>((y - t.rect.y0) / kPreviewBlock * blocks + (x - t.rect.x0) / kPreviewBlock);
+            image.at(x - area_.x0, y - area_.y0) = sampled ? mean(t.sums[i], t.samples) : t.preview[block];
+        }
+    }
+}
+
+double Framebuffer::relative_standard_error(std::uint64_t generation) const {
+    double variance_of_mean = 0.0, total = 0.0;
+    std::size_t pixels = 0;
+    for (const Tile& t : tiles_) {
+        if (t.generation != generation || t.samples < 2) continue;
+        for (const PixelSum& p : t.sums) {
+            const double n = t.samples - static_cast<double>(p.rejected);
+            if (n < 2.0) continue;
+            const double m = luminance(p.radiance) / n;
+            variance_of_mean += std::max(0.0, p.luminance2 / n - m * m) / (n - 1.0);
+            total += m;
+            ++pixels;
+        }
+    }
+    if (pixels == 0 || !(total > 0.0)) return 0.0;
+    const auto count = static_cast<double>(pixels);
+    return std::sqrt(variance_of_mean / count) / (total / count);
+}
+
+}  // namespace glint

@@ -1,0 +1,70 @@
+// The accumulated picture: per pixel double sums of radiance, kept in tiles, each tile stamped with the generation it
+// belongs to. Knows no renderer or thread. Not synchronised: its owner locks.
+// Invariant: a tile whose stamp is not the asked generation counts as empty, so nothing is ever cleared.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "core/image.h"
+
+namespace glint {
+
+constexpr int kTileSize = 16;     // pixels a side
+constexpr int kPreviewBlock = 8;  // pixels a side that share one ray of the coarse preview
+
+struct PixelSum {
+    glm::dvec3 radiance{0.0};
+    double luminance2 = 0.0;     // sum of squared sample luminances, for the error estimate
+    std::uint32_t rejected = 0;  // samples left out of the sums because they were not finite
+};
+
+struct TileRect {
+    int x0, y0, x1, y1;  // in the whole picture, upper bounds excluded
+    [[nodiscard]] std::size_t pixels() const { return static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0); }
+};
+
+class Framebuffer {
+public:
+    // Covers [x0,x1) x [y0,y1) of the picture.
+    explicit Framebuffer(TileRect area);
+
+    [[nodiscard]] TileRect area() const { return area_; }
+    [[nodiscard]] std::size_t tile_count() const { return tiles_.size(); }
+    [[nodiscard]] TileRect tile_rect(std::size_t tile) const { return tiles_[tile].rect; }
+
+    // Samples each pixel of the tile has in `generation`.
+    [[nodiscard]] int samples(std::size_t tile, std::uint64_t generation) const;
+    // The tile's sums, row by row; zeros when it has none of this generation.
+    void copy_out(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums) const;
+    void write_back(std::size_t tile, std::uint64_t generation, const std::vector<PixelSum>& sums, int samples);
+    // One colour per preview block of the tile, row by row.
+    void write_preview(std::size_t tile, std::uint64_t generation, const std::vector<glm::vec3>& blocks);
+
+    // Sets the tile's pixels of an image that covers area(): means, or previews where there are no samples yet; leaves
+    // them alone where there is neither.
+    void resolve(std::size_t tile, std::uint64_t generation, Image& image) const;
+    // Root mean square over pixels of the standard error of the mean, divided by the picture's mean; luminance.
+    // From the plain sample variance, so it is too large for stratified samplers, never too small on average.
+    [[nodiscard]] double relative_standard_error(std::uint64_t generation) const;
+
+private:
+    struct Tile {
+        TileRect rect;
+        std::uint64_t generation = 0, preview_generation = 0;
+        int samples = 0;
+        std::vector<PixelSum> sums;
+        std::vector<glm::vec3> preview;
+    };
+    TileRect area_;
+    std::vector<Tile> tiles_;
+};
+
+[[nodiscard]] inline double luminance(glm::dvec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+
+// Blocks per row of a tile's preview.
+[[nodiscard]] inline int preview_blocks(int pixels) { return (pixels + kPreviewBlock - 1) / kPreviewBlock; }
+
+}  // namespace glint

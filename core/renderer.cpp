@@ -1,0 +1,252 @@
+#include "core/renderer.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <utility>
+
+#include "core/framebuffer.h"
+#include "core/render_plan.h"
+#include "core/tile_kernels.h"
+
+namespace glint {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Samples a pixel gets per visit: 1, 1, 2, 4, then this many.
+constexpr int kMaxBatch = 8;
+
+// A frame with everything derived from it once, before any worker sees it.
+struct Order {
+    Frame frame;
+    RenderPlan plan;
+    Camera camera;
+    std::uint64_t generation = 0;
+};
+
+struct Task {
+    std::size_t tile = 0;
+    bool preview = false;
+};
+
+void lower_priority() {
+    // The window's thread must stay responsive on a machine whose cores are all rendering.
+    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10);
+}
+
+}  // namespace
+
+struct Renderer::State {
+    const bool preview;
+    std::atomic<std::uint64_t> generation{0};
+
+    mutable std::mutex mutex;  // guards everything below
+    mutable std::condition_variable work, change;
+    std::shared_ptr<const Order> order;
+    std::shared_ptr<Framebuffer> framebuffer;
+    std::deque<Task> queue;
+    std::uint64_t queue_generation = 0;
+    std::size_t previews_left = 0, tiles_left = 0;
+    bool paused = false, stopping = false;
+    RayCounts counts;
+    Clock::time_point running_since;
+    double seconds_before = 0.0;  // until the last pause or the finish
+    bool running = false;
+
+    explicit State(bool with_preview) : preview(with_preview) {}
+
+    [[nodiscard]] double seconds() const {
+        return seconds_before + (running ? std::chrono::duration<double>(Clock::now() - running_since).count() : 0.0);
+    }
+    void run_clock(bool on) {
+        if (on == running) return;
+        if (on) running_since = Clock::now();
+        else seconds_before = seconds();
+        running = on;
+    }
+    [[nodiscard]] bool finished() const { return order != nullptr && queue_generation == order->generation && tiles_left == 0; }
+
+    // The first worker to look at a new order deals its tiles out; restart() itself stays O(1).
+    void deal() {
+        const Frame& f = order->frame;
+        const TileRect area{f.x0, f.y0, f.x1, f.y1};
+        const bool fits = framebuffer != nullptr && framebuffer->area().x0 == area.x0 && framebuffer->area().y0 == area.y0 &&
+                          framebuffer->area().x1 == area.x1 && framebuffer->area().y1 == area.y1;
+        if (!fits) framebuffer = std::make_shared<Framebuffer>(area);
+        queue.clear();
+        const std::size_t n = framebuffer->tile_count();
+        if (preview) {
+            for (std::size_t i = 0; i < n; ++i) queue.push_back({i, true});
+        }
+        for (std::size_t i = 0; i < n; ++i) queue.push_back({i, false});
+        previews_left = preview ? n : 0;
+        tiles_left = n;
+        queue_generation = order->generation;
+    }
+
+    void work_loop();
+    void render(const Order& o, const Task& task, std::vector<PixelSum>& sums, std::vector<glm::vec3>& blocks, Workspace& workspace);
+};
+
+void Renderer::State::work_loop() {
+    if (preview) lower_priority();
+    std::vector<PixelSum> sums;
+    std::vector<glm::vec3> blocks;
+    Workspace workspace;
+    std::unique_lock lock(mutex);
+    for (;;) {
+        work.wait(lock, [this] {
+            return stopping || (order != nullptr && !paused && (queue_generation != order->generation || !queue.empty()));
+        });
+        if (stopping) return;
+        if (queue_generation != order->generation) {
+            deal();
+            work.notify_all();
+        }
+        const Task task = queue.front();
+        queue.pop_front();
+        const std::shared_ptr<const Order> o = order;
+        const int first = framebuffer->samples(task.tile, o->generation);
+        const int last = std::min(o->frame.spp, first + std::clamp(first, 1, kMaxBatch));
+        const TileRect rect = framebuffer->tile_rect(task.tile);
+        if (!task.preview) framebuffer->copy_out(task.tile, o->generation, sums);
+        lock.unlock();
+
+        workspace.counts = RayCounts();
+        const KernelInput input{*o->frame.scene, *o->frame.accelerator, o->plan, o->camera, generation, o->generation};
+        const bool done = task.preview ? render_preview(input, rect, blocks, workspace)
+                                       : render_tile(input, rect, first, last, sums, workspace);
+        lock.lock();
+        // A newer order makes this result worthless; it is dropped here and nowhere else.
+        if (!done || o->generation != order->generation) continue;
+        if (task.preview) {
+            framebuffer->write_preview(task.tile, o->generation, blocks);
+            if (--previews_left == 0) change.notify_all();
+            continue;
+        }
+        counts += workspace.counts;
+        framebuffer->write_back(task.tile, o->generation, sums, last);
+        if (last < o->frame.spp) {
+            queue.push_back(task);
+            if (queue.size() == 1) work.notify_one();
+        } else if (--tiles_left == 0) {
+            run_clock(false);
+            change.notify_all();
+        }
+    }
+}
+
+Renderer::Renderer(int threads, bool preview) : state_(std::make_unique<State>(preview)) {
+    for (int i = 0; i < std::max(1, threads); ++i) workers_.emplace_back([this] { state_->work_loop(); });
+}
+
+Renderer::~Renderer() {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->stopping = true;
+        state_->generation = ~std::uint64_t{0};  // abandons tiles in progress
+    }
+    state_->work.notify_all();
+    workers_.clear();
+}
+
+std::uint64_t Renderer::restart(Frame frame) {
+    assert(frame.scene != nullptr && frame.accelerator != nullptr && frame.width > 0 && frame.height > 0 && frame.spp > 0);
+    if (frame.x1 == 0 && frame.y1 == 0) {
+        frame.x1 = frame.width;
+        frame.y1 = frame.height;
+    }
+    auto order = std::make_shared<Order>();
+    order->plan = plan_render(*frame.scene, frame.settings, frame.camera);
+    order->camera = Camera(order->plan.camera, frame.width, frame.height);
+    order->frame = std::move(frame);
+    State& s = *state_;
+    std::shared_ptr<const Order> old;  // freed outside the lock: it may hold the last reference to a scene
+    std::uint64_t generation = 0;
+    {
+        const std::lock_guard lock(s.mutex);
+        generation = ++s.generation;
+        order->generation = generation;
+        old = std::exchange(s.order, order);
+        s.counts = RayCounts();
+        s.run_clock(false);
+        s.seconds_before = 0.0;
+        s.run_clock(!s.paused);
+    }
+    s.work.notify_all();
+    return generation;
+}
+
+void Renderer::set_paused(bool paused) {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->paused = paused;
+        state_->run_clock(!paused && state_->order != nullptr && !state_->finished());
+    }
+    state_->work.notify_all();
+}
+
+Progress Renderer::progress() const {
+    const State& s = *state_;
+    const std::lock_guard lock(s.mutex);
+    Progress p;
+    p.seconds = s.seconds();
+    p.rays = s.counts;
+    if (s.order == nullptr) return p;
+    p.generation = s.order->generation;
+    if (s.queue_generation != s.order->generation) return p;
+    p.finished = s.finished();
+    p.preview_complete = s.previews_left == 0;
+    p.spp_min = s.order->frame.spp;
+    for (std::size_t i = 0; i < s.framebuffer->tile_count(); ++i) {
+        const int n = s.framebuffer->samples(i, p.generation);
+        p.spp_min = std::min(p.spp_min, n);
+        p.spp_max = std::max(p.spp_max, n);
+    }
+    if (!s.preview) p.preview_complete = p.spp_min > 0;
+    return p;
+}
+
+double Renderer::relative_standard_error() const {
+    const State& s = *state_;
+    const std::lock_guard lock(s.mutex);
+    return s.framebuffer != nullptr ? s.framebuffer->relative_standard_error(s.order->generation) : 0.0;
+}
+
+bool Renderer::resolve(Image& image) const {
+    const State& s = *state_;
+    std::unique_lock lock(s.mutex);
+    if (s.order == nullptr || s.queue_generation != s.order->generation || s.previews_left > 0) return false;
+    const std::uint64_t shown = s.order->generation;
+    const std::shared_ptr<const Framebuffer> framebuffer = s.framebuffer;
+    lock.unlock();
+    image.width = framebuffer->area().x1 - framebuffer->area().x0;
+    image.height = framebuffer->area().y1 - framebuffer->area().y0;
+    image.pixels.assign(framebuffer->area().pixels(), glm::vec3(0.0f));
+    // One short lock a tile, so that workers merging theirs hardly wait.
+    for (std::size_t i = 0; i < framebuffer->tile_count(); ++i) {
+        lock.lock();
+        framebuffer->resolve(i, shown, image);
+        lock.unlock();
+    }
+    return s.generation.load() == shown;
+}
+
+void Renderer::wait(double deadline_seconds, const std::atomic<bool>* stop) const {
+    const State& s = *state_;
+    std::unique_lock lock(s.mutex);
+    while (!s.finished() && s.seconds() < deadline_seconds && !(stop != nullptr && stop->load())) {
+        // Signals only set a flag, so it is looked at a few dozen times a second.
+        s.change.wait_for(lock, std::chrono::milliseconds(20));
+    }
+}
+
+}  // namespace glint

@@ -1,0 +1,67 @@
+// The tile renderer: workers accumulate samples of an immutable Frame into a framebuffer, forever restartable.
+// Knows no window. Invariants: restart() waits for nobody and clears nothing; a result of an old frame never
+// reaches the framebuffer; the sums of a pixel depend on (frame, sample count) alone, never on threads or tiles.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "accel/accelerator.h"
+#include "core/image.h"
+#include "core/ray_counts.h"
+#include "core/settings.h"
+
+namespace glint {
+
+// One immutable order to the workers. The rectangle [x0,x1) x [y0,y1) of the width x height picture is rendered.
+struct Frame {
+    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const AnyAccelerator> accelerator;
+    CameraPose camera;
+    RenderSettings settings;
+    int width = 0, height = 0;
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // x1 = y1 = 0: the whole picture
+    int spp = 64;                        // samples a pixel; the workers idle when they are reached
+};
+
+struct Progress {
+    std::uint64_t generation = 0;    // of the frame that is being rendered
+    bool preview_complete = false;   // the coarse first look (or more) covers the whole picture
+    bool finished = false;           // every pixel has its samples
+    int spp_min = 0, spp_max = 0;    // samples a pixel so far
+    double seconds = 0.0;            // since restart(), pauses excluded; stands still when finished
+    RayCounts rays;                  // and the samples and branches that were dropped
+};
+
+class Renderer {
+public:
+    // threads >= 1. preview: render a coarse picture first after each restart (the viewer wants it, a file does not).
+    Renderer(int threads, bool preview);
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
+    // Replaces the frame. O(1); waits for no worker. Returns the new generation.
+    std::uint64_t restart(Frame frame);
+    void set_paused(bool paused);
+    [[nodiscard]] Progress progress() const;
+    // The mean of the samples so far as linear radiance, at the frame's crop size. Where a pixel has no sample yet, its
+    // coarse preview. False, and `image` untouched, while not even the preview covers the picture.
+    bool resolve(Image& image) const;
+    // Root mean square of the pixels' standard errors over the picture's mean, from the plain sample variance: an upper
+    // bound for stratified samplers. 0 below two samples a pixel.
+    [[nodiscard]] double relative_standard_error() const;
+    // Waits until finished or until `deadline` seconds of rendering passed or *stop is true (stop may be null).
+    void wait(double deadline_seconds, const std::atomic<bool>* stop) const;
+    [[nodiscard]] int threads() const { return static_cast<int>(workers_.size()); }
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+    std::vector<std::jthread> workers_;
+};
+
+}  // namespace glint

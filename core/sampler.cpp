@@ -1,0 +1,134 @@
+#include "core/sampler.h"
+
+#include <cmath>
+
+namespace glint {
+namespace {
+
+// The top 24 bits, so that 0xffffffff stays below 1 (a float product with 2^-32 would round to 1).
+float unit_float(std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
+
+std::uint32_t reverse_bits(std::uint32_t x) {
+    x = (x >> 16) | (x << 16);
+    x = ((x & 0xff00ff00u) >> 8) | ((x & 0x00ff00ffu) << 8);
+    x = ((x & 0xf0f0f0f0u) >> 4) | ((x & 0x0f0f0f0fu) << 4);
+    x = ((x & 0xccccccccu) >> 2) | ((x & 0x33333333u) << 2);
+    return ((x & 0xaaaaaaaau) >> 1) | ((x & 0x55555555u) << 1);
+}
+
+// Owen scrambling of a bit-reversed number: each bit is flipped by a hash of the bits below it (Laine & Karras 2011;
+// constants of Vegdahl 2021, "Building a Better LK Hash").
+std::uint32_t owen_scramble_reversed(std::uint32_t x, std::uint32_t seed) {
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+// Second Sobol' dimension, bit-reversed: the Pascal matrix modulo 2 as five butterfly steps instead of 32 columns.
+std::uint32_t sobol_second_reversed(std::uint32_t i) {
+    i ^= (i & 0xaaaaaaaau) >> 1;
+    i ^= (i & 0xccccccccu) >> 2;
+    i ^= (i & 0xf0f0f0f0u) >> 4;
+    i ^= (i & 0xff00ff00u) >> 8;
+    return i ^ (i >> 16);
+}
+
+// A random permutation of 0..n-1 without a table (Kensler 2013, "Correlated Multi-Jittered Sampling").
+std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint32_t p) {
+    std::uint32_t w = n - 1;
+    w |= w >> 1; w |= w >> 2; w |= w >> 4; w |= w >> 8; w |= w >> 16;
+    do {
+        i ^= p; i *= 0xe170893du; i ^= p >> 16; i ^= (i & w) >> 4;
+        i ^= p >> 8; i *= 0x0929eb3fu; i ^= p >> 23; i ^= (i & w) >> 1;
+        i *= 1u | p >> 27; i *= 0x6935fa69u; i ^= (i & w) >> 11; i *= 0x74dcb303u;
+        i ^= (i & w) >> 2; i *= 0x9e501cc3u; i ^= (i & w) >> 2; i *= 0xc860a3dfu;
+        i &= w;
+        i ^= i >> 5;
+    } while (i >= n);
+    return (i + p) % n;
+}
+
+constexpr std::uint32_t kCells = kStrata * kStrata;
+
+// Lattice cell of `regular`: the pixel's own dimension runs through it coarse to fine; the others pair at random, alike
+// in every pixel.
+std::uint32_t regular_cell(std::uint32_t index, std::uint32_t dimension) {
+    const std::uint32_t i = index % kCells;
+    if (dimension != 0) return permute(i, kCells, hash(dimension));
+    std::uint32_t x = 0, y = 0;
+    for (std::uint32_t bit = 0; bit < 3; ++bit) {
+        x |= ((i >> (2 * bit)) & 1u) << (2 - bit);
+        y |= ((i >> (2 * bit + 1)) & 1u) << (2 - bit);
+    }
+    return y * kStrata + x;
+}
+
+}  // namespace
+
+glm::vec2 Sampler::square(std::uint32_t dimension) const noexcept {
+    const std::uint32_t seed = hash(pixel_, dimension);
+    switch (kind_) {
+        case SamplerKind::sobol: {
+            // Every dimension pair is the same (0,2)-sequence, shuffled and scrambled on its own (Burley 2020).
+            const std::uint32_t i = reverse_bits(owen_scramble_reversed(reverse_bits(index_), seed));
+            return {unit_float(reverse_bits(owen_scramble_reversed(i, hash(seed ^ 0x68bc21ebu)))),
+                    unit_float(reverse_bits(owen_scramble_reversed(sobol_second_reversed(i), hash(seed ^ 0x02e5be93u))))};
+        }
+        case SamplerKind::jittered: {
+            const std::uint32_t block = hash(seed, index_ / kCells);
+            const std::uint32_t cell = permute(index_ % kCells, kCells, block);
+            const std::uint32_t jitter = hash(block, index_ + 1);
+            const glm::vec2 p((static_cast<float>(cell % kStrata) + unit_float(jitter)) / kStrata,
+                              (static_cast<float>(cell / kStrata) + unit_float(hash(jitter))) / kStrata);
+            return glm::min(p, 0x1.fffffep-1f);
+        }
+        case SamplerKind::random: {
+            const std::uint32_t x = hash(seed, index_);
+            return {unit_float(x), unit_float(hash(x ^ 0x967a889bu))};
+        }
+        case SamplerKind::regular: break;
+    }
+    const std::uint32_t cell = regular_cell(index_, dimension);
+    return (glm::vec2(cell % kStrata, cell / kStrata) + 0.5f) / static_cast<float>(kStrata);
+}
+
+float Sampler::interval(std::uint32_t dimension) const noexcept {
+    const std::uint32_t seed = hash(pixel_, dimension);
+    switch (kind_) {
+        case SamplerKind::sobol: {
+            const std::uint32_t i = reverse_bits(owen_scramble_reversed(reverse_bits(index_), seed));
+            return unit_float(reverse_bits(owen_scramble_reversed(i, hash(seed ^ 0x68bc21ebu))));
+        }
+        case SamplerKind::jittered: {
+            const std::uint32_t block = hash(seed, index_ / kCells);
+            const auto cell = static_cast<float>(permute(index_ % kCells, kCells, block));
+            return std::min((cell + unit_float(hash(block, index_ + 1))) / kCells, 0x1.fffffep-1f);
+        }
+        case SamplerKind::random: return unit_float(hash(seed, index_));
+        case SamplerKind::regular: break;
+    }
+    return (static_cast<float>(permute(index_ % kCells, kCells, hash(dimension))) + 0.5f) / static_cast<float>(kCells);
+}
+
+glm::vec2 disk_from_square(glm::vec2 u) noexcept {
+    const glm::vec2 p = 2.0f * u - 1.0f;
+    if (p.x == 0.0f && p.y == 0.0f) return {0.0f, 0.0f};
+    constexpr float kQuarterPi = 0.785398163397448309616f;
+    const bool wide = std::abs(p.x) > std::abs(p.y);
+    const float r = wide ? p.x : p.y;
+    const float angle = kQuarterPi * (wide ? p.y / p.x : p.x / p.y);
+    const float c = std::cos(angle), s = std::sin(angle);
+    return wide ? glm::vec2(r * c, r * s) : glm::vec2(r * s, r * c);
+}
+
+glm::vec3 sphere_from_square(glm::vec2 u) noexcept {
+    constexpr float kTwoPi = 6.28318530717958647692f;
+    const float z = 1.0f - 2.0f * u.x;
+    const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
+    return {r * std::cos(kTwoPi * u.y), r * std::sin(kTwoPi * u.y), z};
+}
+
+}  // namespace glint

@@ -1,0 +1,84 @@
+#include "core/scene.h"
+
+#include <utility>
+
+namespace glint {
+namespace {
+
+constexpr std::size_t slot(PrimitiveKind kind) { return static_cast<std::size_t>(kind); }
+
+// A kind's ids end where the tag bits begin.
+void check_room(std::size_t count) {
+    if (count >= kMaxPrimitivesPerKind) throw SceneError("more than 536870911 primitives of one kind");
+}
+
+}  // namespace
+
+std::uint32_t SceneBuilder::add_material(const Material& m) {
+    // Files repeat a material before each object; only the neighbour is compared, so this stays O(1).
+    if (scene_.materials.empty() || !(scene_.materials.back() == m)) scene_.materials.push_back(m);
+    return static_cast<std::uint32_t>(scene_.materials.size() - 1);
+}
+
+bool SceneBuilder::add(const Sphere& s, std::uint32_t material) {
+    if (!valid(s)) return false;
+    check_room(geometry_.spheres.size());
+    geometry_.spheres.push_back(s);
+    scene_.material_of[slot(PrimitiveKind::sphere)].push_back(material);
+    return true;
+}
+
+bool SceneBuilder::add(const Box& b, std::uint32_t material) {
+    if (!valid(b)) return false;
+    check_room(geometry_.boxes.size());
+    geometry_.boxes.push_back(b);
+    scene_.material_of[slot(PrimitiveKind::box)].push_back(material);
+    return true;
+}
+
+bool SceneBuilder::add(const Cone& c, std::uint32_t material) {
+    if (!valid(c)) return false;
+    check_room(geometry_.cones.size());
+    geometry_.cones.push_back(c);
+    scene_.material_of[slot(PrimitiveKind::cone)].push_back(material);
+    return true;
+}
+
+bool SceneBuilder::add(const Plane& p, std::uint32_t material) {
+    if (!valid(p)) return false;
+    check_room(geometry_.planes.size());
+    geometry_.planes.push_back(p);
+    scene_.material_of[slot(PrimitiveKind::plane)].push_back(material);
+    return true;
+}
+
+std::uint32_t SceneBuilder::add_vertex(glm::vec3 position, glm::vec3 normal) {
+    check_room(geometry_.vertices.size());
+    any_normal_ = any_normal_ || normal != glm::vec3(0.0f);
+    geometry_.vertices.push_back(position);
+    scene_.normals.push_back(normal);
+    return static_cast<std::uint32_t>(geometry_.vertices.size() - 1);
+}
+
+bool SceneBuilder::add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material) {
+    const auto& v = geometry_.vertices;
+    if (!valid_triangle(v[a], v[b], v[c])) return false;
+    check_room(geometry_.triangles.size());
+    geometry_.triangles.push_back({a, b, c});
+    scene_.material_of[slot(PrimitiveKind::triangle)].push_back(material);
+    return true;
+}
+
+std::shared_ptr<const Scene> SceneBuilder::finish() {
+    if (scene_.materials.empty()) scene_.materials.emplace_back();
+    if (scene_.cameras.empty()) scene_.cameras.emplace_back();
+    if (!any_normal_) scene_.normals.clear();
+    scene_.normals.shrink_to_fit();
+    geometry_.vertices.shrink_to_fit();
+    scene_.geometry = std::make_shared<const Geometry>(std::move(geometry_));
+    auto scene = std::make_shared<const Scene>(std::move(scene_));
+    *this = SceneBuilder();
+    return scene;
+}
+
+}  // namespace glint

@@ -1,0 +1,74 @@
+// A scene as loaded: geometry, materials, lights, environment, cameras, and what the file asked of the renderer.
+// Knows no settings, window or accelerator. Immutable once built; shared as shared_ptr<const Scene>.
+// Invariant: material_of[kind] has one entry below materials.size() for each primitive of that kind.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "accel/geometry.h"
+#include "core/camera.h"
+#include "core/environment.h"
+#include "core/light.h"
+#include "core/material.h"
+
+namespace glint {
+
+enum class Transfer { linear, srgb };
+
+struct Scene {
+    std::string name;  // file name or builtin:NAME, for titles and reports
+    std::shared_ptr<const Geometry> geometry = std::make_shared<Geometry>();
+    // Per vertex, for smooth shading; empty, or as long as geometry->vertices, (0,0,0) where a vertex has none.
+    std::vector<glm::vec3> normals;
+    std::vector<Material> materials;
+    std::array<std::vector<std::uint32_t>, kPrimitiveKinds> material_of;
+    std::vector<Light> lights;
+    Environment environment;
+    std::vector<CameraPose> cameras;  // at least one
+    int width = 1280, height = 720;   // what the file asks for
+    int spp = 0;                      // 0 = the file says nothing
+    std::string accelerator;          // "none", "grid", "bvh" or empty
+    Transfer transfer = Transfer::srgb;
+    std::vector<std::string> warnings;  // one line each: path:line: what was skipped
+
+    [[nodiscard]] const Material& material(PrimitiveId id) const {
+        return materials[material_of[static_cast<std::size_t>(kind_of(id))][index_of(id)]];
+    }
+};
+
+// A scene that cannot be used, with the user's file to blame: `path:line: reason`, one line.
+class SceneError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+// Collects primitives with the current material, drops invalid ones, and hands out the finished Scene.
+class SceneBuilder {
+public:
+    std::uint32_t add_material(const Material& m);
+    // Each returns false when the primitive is degenerate and was dropped (the caller words the warning).
+    bool add(const Sphere& s, std::uint32_t material);
+    bool add(const Box& b, std::uint32_t material);
+    bool add(const Cone& c, std::uint32_t material);
+    bool add(const Plane& p, std::uint32_t material);
+    // Vertices are appended once and shared by triangles; returns the new vertex's index.
+    std::uint32_t add_vertex(glm::vec3 position, glm::vec3 normal = glm::vec3(0.0f));
+    bool add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
+    [[nodiscard]] const Geometry& geometry() const { return geometry_; }
+    // Fills geometry, normals, materials and material_of of scene(); the builder is empty afterwards.
+    [[nodiscard]] std::shared_ptr<const Scene> finish();
+    // Everything else of the scene is set here directly.
+    Scene& scene() { return scene_; }
+
+private:
+    Scene scene_;
+    Geometry geometry_;
+    bool any_normal_ = false;
+};
+
+}  // namespace glint

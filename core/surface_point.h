@@ -1,0 +1,29 @@
+// From a raw hit to what shading needs: an accurate point, its normals, and where the next ray may start.
+// Knows no light. Invariant: `p` lies on the surface up to the rounding of its coordinates to float, and a ray started at
+// spawn_origin() on the side of its normal cannot hit the surface it leaves.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "core/scene.h"
+
+namespace glint {
+
+struct SurfacePoint {
+    glm::vec3 p;
+    glm::vec3 ng;         // geometric normal, unit, on the side of wo
+    glm::vec3 ns;         // shading normal, unit, in the hemisphere of ng
+    bool outside;         // wo is on the outer side (the winding's front)
+    float error;          // how far a later intersection may misjudge the surface's position, scene units
+    std::uint32_t material;
+};
+
+// `hit` must be found; `wo` points back along the ray.
+[[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) noexcept;
+
+// The origin for a ray that leaves towards the side of the unit vector `n`.
+[[nodiscard]] inline glm::vec3 spawn_origin(const SurfacePoint& s, glm::vec3 n) noexcept {
+    return glm::vec3(glm::dvec3(s.p) + static_cast<double>(s.error) * glm::dvec3(n));
+}
+
+}  // namespace glint
