@@ -38,7 +38,8 @@ struct Binning {
 
     explicit Binning(const Aabb& centroids) : lo(centroids.lo) {
         const glm::vec3 size = centroids.size();
-        for (int i = 0; i < 3; ++i) scale[i] = size[i] > 0.0f ? kBins / size[i] : 0.0f;
+        // An extent so small that its reciprocal overflows counts as none.
+        for (int i = 0; i < 3; ++i) scale[i] = kBins / size[i] < kInfinity ? kBins / size[i] : 0.0f;
     }
     [[nodiscard]] int operator()(glm::vec3 c, int axis) const {
         return std::clamp(static_cast<int>((c[axis] - lo[axis]) * scale[axis]), 0, kBins - 1);

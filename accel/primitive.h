@@ -1,7 +1,7 @@
 // Ray against one primitive: the only arithmetic that decides a hit. Every accelerator ends here, so all agree to the bit.
 // Knows no accelerator. Invariant: a reported t lies in (0, t_max] and inside the ray's interval through the primitive's
 // padded bounds (slab_interval below), so that a box test by the same arithmetic can never cull a hit.
-// Triangles are decided in float, watertight, with a double fallback; all other primitives in double.
+// Triangles are sheared in float, watertight, and decided like all other primitives in double.
 #pragma once
 
 #include "accel/geometry.h"
@@ -17,8 +17,8 @@ struct PreparedRay {
     glm::vec3 reciprocal, near_offset, far_offset;
     // Watertight triangles: the axes, permuted so that |direction[kz]| is largest, and the shear that maps the ray to +z.
     int kx, ky, kz;
-    float shear_x, shear_y, shear_z;
-    bool usable;  // false for a non-finite or zero direction: such a ray hits nothing
+    float shear_x, shear_y;
+    bool usable;  // false for a non-finite or (nearly) zero direction: such a ray hits nothing
 
     // magnitude: the largest absolute coordinate of the geometry the ray will meet.
     PreparedRay(const Ray& ray, float magnitude) noexcept;
@@ -37,21 +37,21 @@ inline PreparedRay::PreparedRay(const Ray& ray, float magnitude) noexcept
     ky = kx == 2 ? 0 : kx + 1;
     const float largest = a[kz];
     const glm::vec3 sum = origin + direction;
-    usable = std::isfinite(sum.x + sum.y + sum.z) && largest > 0.0f && t_max > 0.0f;
+    const float size = std::max(std::max(std::abs(origin.x), std::abs(origin.y)), std::abs(origin.z)) + magnitude;
+    // A direction so short that a slab's arithmetic overflows counts as zero. With what is left no slab is ever NaN.
+    usable = std::isfinite(sum.x + sum.y + sum.z) && t_max > 0.0f && largest >= 0x1p-86f && size <= 0x1p87f * largest;
     if (!usable) {
         reciprocal = near_offset = far_offset = glm::vec3(0.0f);
-        shear_x = shear_y = shear_z = 0.0f;
+        shear_x = shear_y = 0.0f;
         return;
     }
     shear_x = direction[kx] / direction[kz];
     shear_y = direction[ky] / direction[kz];
-    shear_z = 1.0f / direction[kz];
     // A zero component would give 0 * inf = NaN. 2^-40 of the largest moves the ray by less than 2^-40 of the scene
     // inside its bounds, far below the padding.
     const float smallest = largest * 0x1p-40f;
     // The computed hit strays from the exact ray by a few rounding errors of numbers as large as origin and geometry:
     // vertex - origin (1), shear (2), edge functions (2), slab arithmetic (3) units of 2^-24; 16 bounds their sum.
-    const float size = std::max(std::max(std::abs(origin.x), std::abs(origin.y)), std::abs(origin.z)) + magnitude;
     const float padding = 16.0f * 0x1p-24f * size;
     for (int i = 0; i < 3; ++i) {
         const float d = a[i] >= smallest ? direction[i] : std::copysign(smallest, direction[i]);
@@ -71,18 +71,22 @@ inline Interval slab_interval(const PreparedRay& ray, const Aabb& box) noexcept 
         const bool forward = ray.reciprocal[i] >= 0.0f;
         const float near = (forward ? box.lo[i] : box.hi[i]) * ray.reciprocal[i] - ray.near_offset[i];
         const float far = (forward ? box.hi[i] : box.lo[i]) * ray.reciprocal[i] - ray.far_offset[i];
-        // Written so that a NaN (overflow only) leaves the interval as it is: conservative.
         interval.near = near > interval.near ? near : interval.near;
         interval.far = far < interval.far ? far : interval.far;
     }
     return interval;
 }
 
+// Whether a hit at t counts. A subnormal t has lost the relative precision that every bound of an error here relies on; an
+// infinite one lies beyond what float can say.
+inline bool reportable(float t, float limit) noexcept {
+    return t >= std::numeric_limits<float>::min() && t <= limit && t < kInfinity;
+}
+
 // The scaled barycentric coordinates of the sheared triangle (its projection along the ray), in float or double.
 template <class Real>
 struct EdgeFunctions {
     Real u, v, w;
-    [[nodiscard]] bool any_zero() const { return u == 0 || v == 0 || w == 0; }
     [[nodiscard]] bool mixed_signs() const { return (u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0); }
 };
 
@@ -99,21 +103,18 @@ inline bool intersect_triangle(const PreparedRay& ray, glm::vec3 v0, glm::vec3 v
     const float ax = a[ray.kx] - ray.shear_x * a[ray.kz], ay = a[ray.ky] - ray.shear_y * a[ray.kz];
     const float bx = b[ray.kx] - ray.shear_x * b[ray.kz], by = b[ray.ky] - ray.shear_y * b[ray.kz];
     const float cx = c[ray.kx] - ray.shear_x * c[ray.kz], cy = c[ray.ky] - ray.shear_y * c[ray.kz];
-    EdgeFunctions<float> e{cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
-    if (e.any_zero()) {
-        // Two float products may cancel to 0 though the exact difference is not; products of floats are exact in double.
-        const EdgeFunctions<double> d{static_cast<double>(cx) * by - static_cast<double>(cy) * bx,
-                                      static_cast<double>(ax) * cy - static_cast<double>(ay) * cx,
-                                      static_cast<double>(bx) * ay - static_cast<double>(by) * ax};
-        if (d.mixed_signs()) return false;
-        e = {static_cast<float>(d.u), static_cast<float>(d.v), static_cast<float>(d.w)};
-    } else if (e.mixed_signs()) {
-        return false;
-    }
-    const float det = e.u + e.v + e.w;
-    if (!(det != 0.0f)) return false;  // the ray lies in the plane, or NaN
-    const float inverse = 1.0f / det;
-    float t = (((e.u * a[ray.kz] + e.v * b[ray.kz]) + e.w * c[ray.kz]) * ray.shear_z) * inverse;
+    // Most misses are certain in float: rounding is monotone, so a difference of products that is not 0 has the exact sign.
+    const EdgeFunctions<float> rough{cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
+    if (rough.mixed_signs()) return false;
+    // In float two products may cancel to 0 though the exact difference is not 0, and products of three lengths leave its
+    // range beyond 1e12 or below 1e-13; in double the products of two floats are exact and none of that happens.
+    const EdgeFunctions<double> e{static_cast<double>(cx) * by - static_cast<double>(cy) * bx,
+                                  static_cast<double>(ax) * cy - static_cast<double>(ay) * cx,
+                                  static_cast<double>(bx) * ay - static_cast<double>(by) * ax};
+    if (e.mixed_signs()) return false;
+    const double det = e.u + e.v + e.w;
+    if (!(std::abs(det) > 0.0)) return false;  // the ray lies in the plane, or NaN
+    auto t = static_cast<float>((e.u * a[ray.kz] + e.v * b[ray.kz] + e.w * c[ray.kz]) / (det * ray.direction[ray.kz]));
     // A needle seen edge-on leaves t badly conditioned. It cannot lie outside the triangle's own bounds, so it is
     // brought back there; this is also what makes culling by boxes exact.
     Aabb box;
@@ -121,17 +122,16 @@ inline bool intersect_triangle(const PreparedRay& ray, glm::vec3 v0, glm::vec3 v
     const Interval inside = slab_interval(ray, box);
     if (inside.empty()) return false;
     t = t < inside.near ? inside.near : t > inside.far ? inside.far : t;
-    if (!(t > 0.0f && t <= t_limit)) return false;
-    hit = {t, e.v * inverse, e.w * inverse};
+    if (!reportable(t, t_limit)) return false;
+    hit = {t, static_cast<float>(e.v / det), static_cast<float>(e.w / det)};
     return true;
 }
 
-// The first root of a pair that lies in (0, limit] once rounded to float; 0 when neither does.
+// The first root of a pair that is reportable once rounded to float; 0 when neither is.
 inline float first_root(double t0, double t1, float limit) noexcept {
     const float near = static_cast<float>(t0), far = static_cast<float>(t1);
-    if (near > 0.0f && near <= limit) return near;
-    if (far > 0.0f && far <= limit) return far;
-    return 0.0f;
+    if (reportable(near, limit)) return near;
+    return reportable(far, limit) ? far : 0.0f;
 }
 
 // Roots in double by the perpendicular form of the discriminant and without cancellation (Haines, Günther &
@@ -202,7 +202,7 @@ inline float intersect_cone(const PreparedRay& ray, const Cone& cone, float t_li
         if (!std::isfinite(t_exact)) continue;
         const float t = static_cast<float>(t_exact);
         const bool on_cone = height >= 0.0 && height <= 1.0 && r0 + r1 * root >= 0.0;
-        if (on_cone && t > 0.0f && t <= t_limit) return t;
+        if (on_cone && reportable(t, t_limit)) return t;
     }
     return 0.0f;
 }
@@ -212,7 +212,7 @@ inline float intersect_plane(const PreparedRay& ray, const Plane& plane, float t
     const double slope = glm::dot(plane.normal, glm::dvec3(ray.direction));
     if (slope == 0.0) return 0.0f;
     const auto t = static_cast<float>(-(glm::dot(plane.normal, glm::dvec3(ray.origin)) + plane.offset) / slope);
-    return t > 0.0f && t <= t_limit && t < kInfinity ? t : 0.0f;
+    return reportable(t, t_limit) ? t : 0.0f;
 }
 
 // Tests primitive `id` and keeps the nearer hit in `best`; at equal t the lower id stays.

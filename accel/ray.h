@@ -1,6 +1,8 @@
 // Rays, boxes and answers of geometry queries, in scene units.
 // Knows nothing of materials, lights or cameras.
-// Invariant: a query reports hits with 0 < t <= t_max; `t` counts in lengths of `direction`, which need not be 1.
+// Invariant: a query reports hits with 0 < t <= t_max whose t is a normal float (neither infinite nor so small that float
+// loses digits); `t` counts in lengths of `direction`, which need not be 1
+// (below 1e-26, or 1e-26 of the coordinates, it counts as zero).
 #pragma once
 
 #include <algorithm>

@@ -35,7 +35,7 @@ UniformGrid::UniformGrid(std::shared_ptr<const Geometry> geometry)
     // A few huge primitives among many small ones would be listed in nearly every cell: coarsen until they fit.
     double density = kCellsPerPrimitive;
     choose_resolution(ids.size(), density);
-    while (count_references(bounds) > kMaxReferencesPerPrimitive * ids.size() + 4096 && density > 0.01) {
+    while (count_references(bounds) > kMaxReferencesPerPrimitive * ids.size() + 4096 && resolution_ != glm::ivec3(1)) {
         density *= 0.5;
         choose_resolution(ids.size(), density);
     }
@@ -104,8 +104,15 @@ Hit UniformGrid::traverse(const Ray& ray) const noexcept {
     Hit best = begin_query(prepared, *geometry_);
     if (!prepared.usable || ids_.empty() || (any && best.found())) return best;
 
-    // Clip to the grid in double. A ray parallel to a slab either stays in it or never enters.
+    // Before clipping: seen from there, what brute force hits may lie outside the padded grid by more than its padding.
     const glm::dvec3 o(ray.origin), d(ray.direction);
+    const double distance = std::max(std::abs(o.x), std::max(std::abs(o.y), std::abs(o.z)));
+    if (distance > kFarOrigin * magnitude_) {
+        const bool beside = slab_interval(prepared, Aabb{glm::vec3(lo_), glm::vec3(hi_)}).empty();
+        return beside ? best : brute_force_.closest_hit(ray);
+    }
+
+    // Clip to the grid in double. A ray parallel to a slab either stays in it or never enters.
     double t_in = 0.0, t_out = best.t;
     for (int i = 0; i < 3; ++i) {
         if (d[i] == 0.0) {
@@ -117,8 +124,6 @@ Hit UniformGrid::traverse(const Ray& ray) const noexcept {
         t_out = std::min(t_out, std::max(t0, t1));
     }
     if (!(t_in <= t_out)) return best;
-    const double distance = std::max(std::abs(o.x), std::max(std::abs(o.y), std::abs(o.z)));
-    if (distance > kFarOrigin * magnitude_) return brute_force_.closest_hit(ray);
 
     glm::ivec3 cell, step, end;
     const glm::dvec3 entry = o + t_in * d;

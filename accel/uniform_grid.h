@@ -20,6 +20,8 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const;
     [[nodiscard]] glm::ivec3 resolution() const { return resolution_; }
     [[nodiscard]] std::size_t reference_count() const { return ids_.size(); }
+    // The lower corner of a cell.
+    [[nodiscard]] glm::dvec3 corner(glm::ivec3 cell) const { return lo_ + glm::dvec3(cell) * cell_; }
 
 private:
     template <bool any>

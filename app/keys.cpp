@@ -11,8 +11,20 @@ namespace {
 
 // GLFW's codes of the keys that are not printable; printable keys have their upper case ASCII code.
 enum : int {
-    kEscape = 256, kRight = 262, kLeft = 263, kDown = 264, kUp = 265, kPageUp = 266, kPageDown = 267, kHome = 268,
-    kF1 = 290, kF12 = 301, kLeftShift = 340, kLeftAlt = 342, kRightShift = 344, kRightAlt = 346
+    kEscape = 256,
+    kRight = 262,
+    kLeft = 263,
+    kDown = 264,
+    kUp = 265,
+    kPageUp = 266,
+    kPageDown = 267,
+    kHome = 268,
+    kF1 = 290,
+    kF12 = 301,
+    kLeftShift = 340,
+    kLeftAlt = 342,
+    kRightShift = 344,
+    kRightAlt = 346
 };
 
 using enum Action;
@@ -105,10 +117,11 @@ KeyMap::KeyMap(const PrintedLabel& printed) {
         changed = false;
         for (std::size_t i = 0; i < kTable.size(); ++i) {
             if (kTable[i].rule != label || places_[i].key == kTable[i].key) continue;
-            const bool taken = is_movement(places_[i].key) || std::ranges::any_of(kTable, [&](const KeyBinding& other) {
-                const auto at = static_cast<std::size_t>(&other - kTable.data());
-                return at != i && other.rule == label && places_[at].key == other.key && other.key == places_[i].key;
-            });
+            const bool taken =
+                is_movement(places_[i].key) || std::ranges::any_of(kTable, [&](const KeyBinding& other) {
+                    const auto at = static_cast<std::size_t>(&other - kTable.data());
+                    return at != i && other.rule == label && places_[at].key == other.key && other.key == places_[i].key;
+                });
             if (!taken) continue;
             places_[i].key = kTable[i].key;
             changed = true;
@@ -119,7 +132,8 @@ KeyMap::KeyMap(const PrintedLabel& printed) {
     for (std::size_t i = 0; i < kTable.size(); ++i) {
         if (kTable[i].rule != label || kTable[i].key <= '9') continue;
         const std::string own = upper(printed(places_[i].key));
-        if (!own.empty() && own != kTable[i].label) places_[i].label = fmt::format("{} ({} of a US keyboard)", own, kTable[i].label);
+        if (!own.empty() && own != kTable[i].label)
+            places_[i].label = fmt::format("{} ({} of a US keyboard)", own, kTable[i].label);
     }
 }
 

@@ -13,23 +13,48 @@
 namespace glint {
 
 enum class Action {
-    move_forward, move_back, move_left, move_right, move_down, move_up,
-    look_left, look_right, look_up, look_down, fast, slow,
-    look_drag, fly_speed,
-    accelerator_auto, accelerator_none, accelerator_grid, accelerator_bvh,
-    toggle_dof, toggle_soft, toggle_fuzzy, toggle_aa, toggle_fresnel,
-    exposure_up, exposure_down, pause, restart, screenshot, camera_home, help, quit
+    move_forward,
+    move_back,
+    move_left,
+    move_right,
+    move_down,
+    move_up,
+    look_left,
+    look_right,
+    look_up,
+    look_down,
+    fast,
+    slow,
+    look_drag,
+    fly_speed,
+    accelerator_auto,
+    accelerator_none,
+    accelerator_grid,
+    accelerator_bvh,
+    toggle_dof,
+    toggle_soft,
+    toggle_fuzzy,
+    toggle_aa,
+    toggle_fresnel,
+    exposure_up,
+    exposure_down,
+    pause,
+    restart,
+    screenshot,
+    camera_home,
+    help,
+    quit
 };
 
 // position: the place on the keyboard decides. label: the printed letter decides. control: as label, together with Ctrl.
 enum class KeyRule { position, label, control };
 
 struct KeyBinding {
-    int key;                  // code of the key on a US layout; negative for the mouse
+    int key;  // code of the key on a US layout; negative for the mouse
     KeyRule rule;
-    std::string_view label;   // as printed on a US keyboard
+    std::string_view label;  // as printed on a US keyboard
     Action action;
-    bool held;                // acts for as long as it is down, not once per press
+    bool held;  // acts for as long as it is down, not once per press
     std::string_view help;
     std::string_view option;  // the same choice on the command line; empty where there is none
 };

@@ -19,7 +19,8 @@ std::filesystem::path pictures_folder() {
 
 std::filesystem::path screenshot_path(const std::filesystem::path& folder, std::string_view scene, std::string_view accelerator,
                                       int spp) {
-    std::string name = scene.starts_with("builtin:") ? std::string(scene.substr(8)) : std::filesystem::path(scene).stem().string();
+    std::string name =
+        scene.starts_with("builtin:") ? std::string(scene.substr(8)) : std::filesystem::path(scene).stem().string();
     for (char& c : name) {
         const auto code = static_cast<unsigned char>(c);
         if (code < 128 && std::isalnum(code) == 0 && c != '.' && c != '-') c = '_';

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,8 +25,8 @@ std::optional<Feature> feature_of(Action action) {
 
 std::string_view name_of(AcceleratorKind kind) { return kAcceleratorNames[static_cast<std::size_t>(kind)]; }
 
-constexpr double kStops = 3.0;          // exposure steps a stop
-constexpr double kLookSpeed = 0.8;      // radians a second of the arrow keys
+constexpr double kStops = 3.0;      // exposure steps a stop
+constexpr double kLookSpeed = 0.8;  // radians a second of the arrow keys
 constexpr double kSpeedPerNotch = 1.25;
 constexpr double kMaxPixels = 1 << 23;  // a framebuffer of doubles of that size takes a quarter of a gigabyte
 constexpr int kMaxSide = 8192;          // every OpenGL 3.3 driver in use has textures of that size
@@ -33,7 +34,10 @@ constexpr int kMaxSide = 8192;          // every OpenGL 3.3 driver in use has te
 }  // namespace
 
 Session::Session(std::shared_ptr<const Scene> scene, const Choices& choices, const CameraPose& camera, AcceleratorSource source)
-    : scene_(std::move(scene)), choices_(choices), camera_(camera, nearest_axis(scene_->cameras.at(0).up)), source_(std::move(source)),
+    : scene_(std::move(scene)),
+      choices_(choices),
+      camera_(camera, nearest_axis(scene_->cameras.at(0).up)),
+      source_(std::move(source)),
       first_exposure_(choices.display.exposure_ev) {}
 
 std::string_view Session::obstacle(Action action) const {
@@ -105,8 +109,8 @@ void Session::change_speed(double notches) { camera_.change_speed(std::pow(kSpee
 
 void Session::resize(int width, int height) {
     const double pixels = static_cast<double>(width) * height;
-    const double shrink = std::min({1.0, std::sqrt(kMaxPixels / std::max(pixels, 1.0)),
-                                    kMaxSide / static_cast<double>(std::max({width, height, 1}))});
+    const double shrink = std::min(
+        {1.0, std::sqrt(kMaxPixels / std::max(pixels, 1.0)), kMaxSide / static_cast<double>(std::max({width, height, 1}))});
     // A window that is a pixel wide stays one; only a minimised one has no picture.
     width_ = width > 0 ? std::max(1, static_cast<int>(width * shrink)) : 0;
     height_ = height > 0 ? std::max(1, static_cast<int>(height * shrink)) : 0;
@@ -117,7 +121,8 @@ std::shared_ptr<const AnyAccelerator> Session::wanted_accelerator() {
     if (!accelerator && source_.failed(wanted_kind())) {
         // Brute force needs no memory of its own, so this ends at a picture in any case.
         const AcceleratorKind fallback = accelerator_in_use().value_or(AcceleratorKind::none);
-        messages_.push_back(fmt::format("not enough memory for accelerator {}; using {}", name_of(wanted_kind()), name_of(fallback)));
+        messages_.push_back(
+            fmt::format("not enough memory for accelerator {}; using {}", name_of(wanted_kind()), name_of(fallback)));
         choices_.accelerator = fallback;
         accelerator = source_.request(fallback);
     }
@@ -156,7 +161,9 @@ std::optional<AcceleratorKind> Session::accelerator_in_use() const {
 }
 
 std::string Session::title(const Progress& progress) const {
-    std::string text = fmt::format("glint \u2014 {}", scene_->name);
+    const bool builtin = scene_->name.starts_with("builtin:");
+    std::string text =
+        fmt::format("glint \u2014 {}", builtin ? scene_->name : std::filesystem::path(scene_->name).filename().string());
     if (const auto kind = accelerator_in_use()) text += fmt::format(" \u2014 {}", name_of(*kind));
     if (building_) text += fmt::format(" (building {})", name_of(wanted_kind()));
     if (submitted_) {
@@ -170,8 +177,10 @@ std::string Session::title(const Progress& progress) const {
         if (on.has(static_cast<Feature>(i))) text += fmt::format(" {}", kFeatureNames[i]);
     if (choices_.settings.fresnel == Fresnel::schlick) text += " schlick";
     if (progress.rays.non_finite > 0) text += fmt::format(", {} non-finite samples", progress.rays.non_finite);
-    if (progress.finished && submitted_) text += ", converged";
-    else if (choices_.paused) text += ", paused";
+    if (progress.finished && submitted_)
+        text += ", converged";
+    else if (choices_.paused)
+        text += ", paused";
     return text;
 }
 

@@ -21,9 +21,9 @@ namespace glint {
 
 // Where accelerators come from; in the viewer an AcceleratorCache. None of the calls waits.
 struct AcceleratorSource {
-    AcceleratorKind automatic = AcceleratorKind::bvh;  // what `auto` means for this scene
+    AcceleratorKind automatic = AcceleratorKind::bvh;                               // what `auto` means for this scene
     std::function<std::shared_ptr<const AnyAccelerator>(AcceleratorKind)> request;  // null while it is being built
-    std::function<bool(AcceleratorKind)> failed;  // true when it can never be built
+    std::function<bool(AcceleratorKind)> failed;                                    // true when it can never be built
 };
 
 // What the user may choose; everything here may be changed by an action.

@@ -22,7 +22,7 @@ namespace {
 constexpr double kFrameSeconds = 1.0 / 30.0;  // software GL takes the cores that render: never redraw more often
 constexpr double kIdleSeconds = 0.25;         // how soon a signal is noticed while nothing happens
 constexpr double kTitleSeconds = 0.25;
-constexpr double kLongestStep = 0.1;          // of flight, seconds: after a stall the camera must not leap
+constexpr double kLongestStep = 0.1;  // of flight, seconds: after a stall the camera must not leap
 
 volatile std::sig_atomic_t caught_signal = 0;
 
@@ -120,9 +120,9 @@ void Viewer::draw(const Progress& progress, double now) {
     const Extent size = window_->framebuffer();
     if (size.width == 0 || size.height == 0) return;
     const DisplaySettings& display = session_.choices().display;
-    const bool news = progress.preview_complete &&
-                      (progress.generation != shown_.generation || progress.rays.camera != shown_.rays.camera ||
-                       progress.finished != shown_.finished || display != shown_display_);
+    const bool news =
+        progress.preview_complete && (progress.generation != shown_.generation || progress.rays.camera != shown_.rays.camera ||
+                                      progress.finished != shown_.finished || display != shown_display_);
     // A picture that merely gets cleaner leaves the cores to the workers; everything else is shown as soon as may be.
     const bool merely_cleaner = progress.generation == shown_.generation && !progress.finished && display == shown_display_;
     const bool upload = news && now >= (merely_cleaner ? next_refinement_ : next_draw_);
@@ -166,7 +166,8 @@ void Viewer::run() {
         last = now;
         // Drawn before the next frame is submitted: in flight every preview reaches the screen.
         draw(renderer_.progress(), now);
-        if (std::optional<Frame> frame = session_.next_frame(shown_of_frame())) generation_ = renderer_.restart(std::move(*frame));
+        if (std::optional<Frame> frame = session_.next_frame(shown_of_frame()))
+            generation_ = renderer_.restart(std::move(*frame));
         for (const std::string& line : session_.take_messages()) fmt::print(stderr, "glint: {}\n", line);
         const Progress progress = renderer_.progress();
         if (session_.resting(progress) != rested) renderer_.set_paused(rested = !rested);
@@ -182,7 +183,7 @@ int run_viewer(const ViewerOptions& options) {
         const Scene& scene = *options.scene;
         const bool given = options.width > 0 && options.height > 0;
         const Extent size = given ? Extent{options.width, options.height} : Extent{scene.width, scene.height};
-        auto window = std::make_unique<ViewerWindow>(size, !given, "glint \u2014 " + scene.name);
+        auto window = std::make_unique<ViewerWindow>(size, !given, "glint");
         const SignalGuard guard;
         Viewer(options, std::move(window)).run();
         return caught_signal == 0 ? 0 : 128 + caught_signal;

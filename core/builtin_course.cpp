@@ -9,29 +9,29 @@
 namespace glint::builtin {
 namespace {
 
-// The numbers of an `f` line, in its order.
+// The numbers of an `f` line, in its order and, as a reader has them, in double.
 struct Finish {
-    glm::vec3 diffuse;
-    float kd;
-    glm::vec3 specular;
-    float ks, shine;
-    float transmits = 0.0f, ior = 1.0f;
+    glm::dvec3 diffuse;
+    double kd;
+    glm::dvec3 specular;
+    double ks, shine;
+    double transmits = 0.0, ior = 1.0;
 };
 
 // P3F's rules: the strength of the highlight is the strength of the mirror too, and any transmittance makes glass.
 Material to_material(const Finish& f) {
     Material m;
-    m.diffuse = f.diffuse * f.kd;
-    m.specular = f.specular * f.ks;
-    m.shininess = f.shine;
-    m.mirror = m.specular;
-    m.glass = f.transmits > 0.0f;
-    m.ior = f.ior;
+    m.diffuse = glm::vec3(f.diffuse * f.kd);
+    m.specular = glm::vec3(f.specular * f.ks);
+    m.shininess = static_cast<float>(f.shine);
+    m.glass = f.transmits > 0.0;
+    if (!m.glass) m.mirror = m.specular;
+    m.ior = static_cast<float>(f.ior);
     return m;
 }
 
-const Finish kBallsFloor{{1.0f, 0.75f, 0.33f}, 1.0f, glm::vec3(1.0f), 0.0f, 10.0f};
-const Finish kPolishedBall{{1.0f, 0.9f, 0.7f}, 0.5f, glm::vec3(1.0f), 0.5f, 30.0827f};
+const Finish kBallsFloor{{1.0, 0.75, 0.33}, 1.0, glm::dvec3(1.0), 0.0, 10.0};
+const Finish kPolishedBall{{1.0, 0.9, 0.7}, 0.5, glm::dvec3(1.0), 0.5, 30.0827};
 
 // All of these scenes are square pictures under 45 degrees unless they say otherwise.
 SceneBuilder course_scene(glm::vec3 background, glm::vec3 eye, glm::vec3 up) {
@@ -81,9 +81,9 @@ SceneBuilder mount(int level) {
     SceneBuilder builder = course_scene({0.078f, 0.361f, 0.753f}, {-1.6f, 1.6f, 1.7f}, {0.0f, 0.0f, 1.0f});
     add_point_light(builder, {-100.0f, -100.0f, 100.0f});
     const std::uint32_t glass =
-        builder.add_material(to_material({glm::vec3(1.0f), 0.1f, glm::vec3(1.0f), 0.1f, 101.148f, 1.0f, 1.6f}));
+        builder.add_material(to_material({glm::dvec3(1.0), 0.1, glm::dvec3(1.0), 0.1, 101.148, 1.0, 1.6}));
     for (const Sphere& s : mountain_balls()) builder.add(s, glass);
-    const std::uint32_t rock = builder.add_material(to_material({{0.5f, 0.45f, 0.35f}, 1.0f, glm::vec3(1.0f), 0.0f, 100.0f}));
+    const std::uint32_t rock = builder.add_material(to_material({{0.5, 0.45, 0.35}, 1.0, glm::dvec3(1.0), 0.0, 100.0}));
     const Mountain mountain = fractal_mountain(level);
     for (const glm::vec3& v : mountain.vertices) builder.add_vertex(v);
     for (const auto& t : mountain.triangles) builder.add_triangle(t[0], t[1], t[2], rock);
@@ -98,14 +98,13 @@ SceneBuilder balls_box() {
     add_point_light(builder, {0.5f, 3.0f, 4.0f});
     add_point_light(builder, {6.0f, 4.0f, 4.0f});
     add_point_light(builder, {-3.0f, 5.0f, 2.0f});
-    const std::uint32_t floor = builder.add_material(to_material({{1.0f, 0.75f, 0.33f}, 0.8f, glm::vec3(1.0f), 0.2f, 10.0f}));
+    const std::uint32_t floor = builder.add_material(to_material({{1.0, 0.75, 0.33}, 0.8, glm::dvec3(1.0), 0.2, 10.0}));
     add_face(builder, {2.5f, -1.0f, 2.5f}, {-2.5f, -1.0f, -2.5f}, {-2.5f, -1.0f, 2.5f}, floor);
     add_face(builder, {-2.5f, -1.0f, -2.5f}, {2.5f, -1.0f, 2.5f}, {2.5f, -1.0f, -2.5f}, floor);
-    const std::uint32_t copper =
-        builder.add_material(to_material({glm::vec3(1.0f), 0.0f, {0.957f, 0.639f, 0.536f}, 1.0f, 190.0827f}));
+    const std::uint32_t copper = builder.add_material(to_material({glm::dvec3(1.0), 0.0, {0.957, 0.639, 0.536}, 1.0, 190.0827}));
     builder.add(Box{glm::vec3(-0.35f), glm::vec3(0.35f)}, copper);
     const std::uint32_t aluminium =
-        builder.add_material(to_material({glm::vec3(1.0f), 0.0f, {0.916f, 0.924f, 0.924f}, 1.0f, 190.0827f}));
+        builder.add_material(to_material({glm::dvec3(1.0), 0.0, {0.916, 0.924, 0.924}, 1.0, 190.0827}));
     // The copper box stands where the flake's first ball would be.
     const std::vector<Sphere> flake = sphereflake(2);
     for (std::size_t i = 1; i < flake.size(); ++i) builder.add(flake[i], aluminium);
@@ -122,7 +121,7 @@ SceneBuilder dof() {
     pose.lens_radius = static_cast<float>(kAperture * window / builder.scene().width);
     pose.focus_distance = static_cast<float>(kFocal * distance);
     add_three_lights(builder);
-    const std::uint32_t floor = builder.add_material(to_material({{1.0f, 0.75f, 0.33f}, 0.8f, glm::vec3(1.0f), 0.0f, 100.0f}));
+    const std::uint32_t floor = builder.add_material(to_material({{1.0, 0.75, 0.33}, 0.8, glm::dvec3(1.0), 0.0, 100.0}));
     add_face(builder, {10.0f, 0.0f, -10.0f}, {-10.0f, 0.0f, -10.0f}, {-10.0f, 0.0f, 10.0f}, floor);
     add_face(builder, {10.0f, 0.0f, 10.0f}, {10.0f, 0.0f, -10.0f}, {-10.0f, 0.0f, 10.0f}, floor);
     const std::uint32_t ball = builder.add_material(to_material(kPolishedBall));

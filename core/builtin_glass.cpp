@@ -34,7 +34,7 @@ Material matte(glm::vec3 albedo) {
 void add_floor(SceneBuilder& builder) {
     constexpr int kTiles = 64;
     constexpr float kTile = 0.5f;
-    constexpr glm::vec3 kLight(0.52f, 0.47f, 0.39f), kDark(0.13f, 0.16f, 0.19f);
+    constexpr glm::vec3 kLight(0.56f, 0.48f, 0.37f), kDark(0.12f, 0.15f, 0.18f);
     const std::array<std::uint32_t, 2> material{builder.add_material(matte(kLight)), builder.add_material(matte(kDark))};
     std::array<std::uint32_t, kTiles + 1> row{}, next{};
     for (int j = 0; j <= kTiles; ++j) {
@@ -90,16 +90,17 @@ void add_daylight(SceneBuilder& builder) {
     sun.shape = Light::Shape::quad;
     const glm::vec3 side = glm::normalize(glm::cross(glm::vec3(0.0f, 1.0f, 0.0f), sun_direction));
     const glm::vec3 rise = glm::cross(sun_direction, side);
-    constexpr float kAway = 40.0f, kSize = 1.6f;
+    // So far away that the ground is lit alike up to the horizon.
+    constexpr float kAway = 1.0e7f, kSize = 4.0e5f;
     sun.edge1 = kSize * side;
     sun.edge2 = -kSize * rise;
     sun.position = kAway * sun_direction - 0.5f * (sun.edge1 + sun.edge2);
     sun.emission = {0.95f, 0.88f, 0.76f};
     Light sky;
     sky.shape = Light::Shape::quad;
-    sky.position = {-20.0f, 15.0f, -20.0f};
-    sky.edge1 = {40.0f, 0.0f, 0.0f};
-    sky.edge2 = {0.0f, 0.0f, 40.0f};
+    sky.position = {-6.0e6f, 4.5e6f, -6.0e6f};
+    sky.edge1 = {1.2e7f, 0.0f, 0.0f};
+    sky.edge2 = {0.0f, 0.0f, 1.2e7f};
     sky.emission = {0.34f, 0.40f, 0.50f};
     builder.scene().lights = {sun, sky};
 

@@ -13,7 +13,7 @@ std::optional<std::filesystem::path> path_below(const std::filesystem::path& fol
     if (error) return std::nullopt;
     // Compared part by part: "/scenes2" starts with the letters of "/scenes" but is not below it.
     const auto [in_root, in_path] = std::mismatch(root.begin(), root.end(), path.begin(), path.end());
-    if (in_root != root.end() || in_path == path.end()) return std::nullopt;
+    if (in_root != root.end()) return std::nullopt;
     return path;
 }
 

@@ -7,7 +7,7 @@
 
 namespace glint {
 
-// The canonical path of `name` when that exists and lies below `folder` (empty: the working directory); nullopt otherwise.
+// The canonical path of `name` when that exists and is `folder` (empty: the working directory) or lies below; else nullopt.
 // Absolute names, `..` and links are all fine as long as they end up below.
 [[nodiscard]] std::optional<std::filesystem::path> path_below(const std::filesystem::path& folder,
                                                               const std::filesystem::path& name);

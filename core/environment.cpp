@@ -54,13 +54,27 @@ std::size_t texel(int size, double s) {
     return static_cast<std::size_t>(static_cast<double>(size - 1) * at);
 }
 
+// The radiance that is displayed as `byte`: the least float x with floor(255.99 x) = byte, so that a sky box comes out as
+// it went in (byte / 255.99 itself is rounded down for three bytes of four, and would be shown one darker).
+float radiance_of_byte(std::uint8_t byte) {
+    static const std::array<float, 256> table = [] {
+        std::array<float, 256> t{};
+        for (int b = 0; b < 256; ++b) {
+            auto x = static_cast<float>(b / 255.99);
+            while (255.99 * static_cast<double>(x) < b) x = std::nextafter(x, 1.0f);
+            t[static_cast<std::size_t>(b)] = x;
+        }
+        return t;
+    }();
+    return table[byte];
+}
+
 glm::vec3 cube_radiance(const std::array<CubeFace, 6>& faces, glm::vec3 d) {
     const FacePoint p = locate(glm::dvec3(d));
     const CubeFace& face = faces[p.face];
     if (face.rgb.empty()) return glm::vec3(0.0f);
     const std::size_t at = 3 * (texel(face.height, p.t) * static_cast<std::size_t>(face.width) + texel(face.width, p.s));
-    // 255.99 and no gamma: the inverse of how the course writes its pictures.
-    return glm::vec3(face.rgb[at], face.rgb[at + 1], face.rgb[at + 2]) / 255.99f;
+    return {radiance_of_byte(face.rgb[at]), radiance_of_byte(face.rgb[at + 1]), radiance_of_byte(face.rgb[at + 2])};
 }
 
 glm::vec3 sky_radiance(const Environment& e, glm::vec3 d) {

@@ -45,6 +45,26 @@ std::string_view json_of_glb(std::string_view bytes, const GltfReport& report) {
     return text;
 }
 
+// tinygltf follows extras and extensions by recursion. Counted in the text, because the parser's own hook for this walks
+// the whole parent again after each object.
+void check_depth(std::string_view text, const GltfReport& report) {
+    int depth = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (in_string) {
+            if (c == '\\') ++i;  // whatever is escaped does not end the string
+            if (c == '"') in_string = false;
+        } else if (c == '"') {
+            in_string = true;
+        } else if (c == '[' || c == '{') {
+            if (++depth > kMaxJsonDepth) report.fail(fmt::format("JSON nested deeper than {} levels", kMaxJsonDepth));
+        } else if (c == ']' || c == '}') {
+            --depth;
+        }
+    }
+}
+
 // Where in the file a value stands; put into words only when something is wrong there.
 struct Place {
     const char* array;
@@ -90,7 +110,7 @@ private:
     // A whole number from 0 to below `limit`. tinygltf would cut off or skip anything else without a word.
     void natural(const json& value, const char* name, const Place& place, std::size_t limit) const {
         if (!value.is_number_unsigned()) report_.fail(fmt::format("{}.{} is not a whole number from 0", place.text(), name));
-        if (value.get<std::uint64_t>() < limit) return;
+        if (limit == kAnyNumber || value.get<std::uint64_t>() < limit) return;
         report_.fail(fmt::format("{}.{} is {}, but there are only {}", place.text(), name, value.get<std::uint64_t>(), limit));
     }
     // The same for a member that may be missing.
@@ -247,14 +267,10 @@ void check_gltf(std::string_view bytes, const GltfReport& report) {
     const std::string_view text = glb ? json_of_glb(bytes, report) : bytes;
     if (text.empty()) report.fail("the file is empty");
     if (text.size() > kMaxJsonBytes) report.fail(fmt::format("more than {} bytes of JSON", kMaxJsonBytes));
-    // tinygltf follows extras and extensions by recursion.
-    const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
-        if (depth > kMaxJsonDepth) report.fail(fmt::format("JSON nested deeper than {} levels", kMaxJsonDepth));
-        return true;
-    };
+    check_depth(text, report);
     json root;
     try {
-        root = json::parse(text.begin(), text.end(), limit_depth);
+        root = json::parse(text.begin(), text.end());
     } catch (const json::exception& e) {
         // "[json.exception.parse_error.101] parse error at line 1, column 1: ...": the tag says nothing to a user.
         const std::string_view what = e.what();

@@ -100,11 +100,24 @@ std::uint32_t GltfMeshReader::material(int index) {
     return *default_material_;
 }
 
-void GltfMeshReader::add(int mesh_index, const glm::dmat4& world_from_mesh) {
+void GltfMeshReader::reserve(int mesh_index) {
     const tinygltf::Mesh& mesh = model_.meshes.at(static_cast<std::size_t>(mesh_index));
     primitives_ += mesh.primitives.size();
     if (primitives_ > kMaxPrimitives)
         report_.fail(fmt::format("more than {} mesh primitives, instances counted", kMaxPrimitives));
+    for (const tinygltf::Primitive& primitive : mesh.primitives) {
+        const auto position = primitive.attributes.find("POSITION");
+        if (primitive.mode < TINYGLTF_MODE_TRIANGLES || position == primitive.attributes.end()) continue;
+        const int corners = primitive.indices >= 0 ? primitive.indices : position->second;
+        const std::uint64_t count = triangle_count(primitive.mode, model_.accessors.at(static_cast<std::size_t>(corners)).count);
+        if (count > kMaxTriangles - triangles_)
+            report_.fail(fmt::format("more than {} triangles, instances counted", kMaxTriangles));
+        triangles_ += count;
+    }
+}
+
+void GltfMeshReader::add(int mesh_index, const glm::dmat4& world_from_mesh) {
+    const tinygltf::Mesh& mesh = model_.meshes.at(static_cast<std::size_t>(mesh_index));
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
         add_primitive(mesh.primitives[i], fmt::format("meshes[{}].primitives[{}]", mesh_index, i), world_from_mesh);
     }
@@ -133,8 +146,6 @@ void GltfMeshReader::add_primitive(const tinygltf::Primitive& primitive, const s
     const Part part{place, primitive.mode, positions, normals, indices, world_from_mesh, material(primitive.material)};
     if (part.mode == TINYGLTF_MODE_TRIANGLES && part.corners() % 3 != 0)
         report_.warn(place + " ends within a triangle, which is left out");
-    triangles_ += triangle_count(part.mode, part.corners());
-    if (triangles_ > kMaxTriangles) report_.fail(fmt::format("more than {} triangles, instances counted", kMaxTriangles));
     add_triangles(part);
 }
 
@@ -168,7 +179,10 @@ void GltfMeshReader::add_triangles(const Part& part) {
         if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
         // Decided before any vertex is stored: an array without bytes may announce millions of vertices at one point.
         if (valid_triangle(p[0], p[1], p[2])) {
-            builder_.add_triangle(vertex(v[0], p[0]), vertex(v[1], p[1]), vertex(v[2], p[2]), part.material);
+            // One after the other: as arguments of one call they would be stored in an order that compilers choose.
+            std::array<std::uint32_t, 3> stored;
+            for (std::size_t k = 0; k < 3; ++k) stored[k] = vertex(v[k], p[k]);
+            builder_.add_triangle(stored[0], stored[1], stored[2], part.material);
         } else if (valid_vertex(p[0]) && valid_vertex(p[1]) && valid_vertex(p[2])) {
             ++zero_area_;
         } else {

@@ -22,6 +22,9 @@ public:
     // All three must outlive the reader. The materials of `model` are added to `builder` at once.
     GltfMeshReader(const tinygltf::Model& model, SceneBuilder& builder, GltfReport& report);
 
+    // Announces one node's use of meshes[mesh]; SceneError when all uses together are too many. To be called for every use
+    // before the first add(), so that a file which asks for too much is refused before any work is done.
+    void reserve(int mesh);
     // One node's use of meshes[mesh]. A mirroring transform turns the winding round, so fronts stay fronts.
     void add(int mesh, const glm::dmat4& world_from_mesh);
     // Warns of the triangles that were dropped, with their numbers.
@@ -41,7 +44,7 @@ private:
     std::vector<std::optional<AccessorView>> views_;  // made at first use: a thousand instances check an accessor once
     std::vector<std::uint32_t> materials_;
     std::optional<std::uint32_t> default_material_;
-    std::uint64_t triangles_ = 0, primitives_ = 0;  // asked for so far, dropped ones included
+    std::uint64_t triangles_ = 0, primitives_ = 0;  // announced so far
     std::uint64_t not_finite_ = 0, zero_area_ = 0;  // dropped
 };
 

@@ -96,6 +96,29 @@ LightSample sample_light(const Light& light, glm::vec3 receiver, glm::vec2 u) no
     return s;
 }
 
+float shadow_reach(const Light& light, glm::vec3 origin, glm::vec3 direction) noexcept {
+    const glm::vec3 size = glm::abs(origin + direction) + glm::abs(origin);
+    const double error = 0x1p-20 * static_cast<double>(std::max(size.x, std::max(size.y, size.z)));
+    const glm::dvec3 d(direction);
+    // What touches a true point shadows it: the ray ends past it, or rounding would decide pixel by pixel.
+    if (!light.has_area()) return static_cast<float>(1.0 + error / std::sqrt(glm::dot(d, d)));
+    double reach = 0.0;
+    if (light.shape == Light::Shape::sphere) {
+        // Entry into a slightly larger ball: a ray that grazes the ball may enter it long before the sampled point.
+        const glm::dvec3 to = glm::dvec3(light.position) - glm::dvec3(origin);
+        const double r = static_cast<double>(light.radius) + error, d2 = glm::dot(d, d);
+        const double nearest = glm::dot(to, d) / d2;
+        const glm::dvec3 off = to - nearest * d;
+        reach = nearest - std::sqrt(std::max(0.0, (r * r - glm::dot(off, off)) / d2));
+    } else {
+        // Measured across the plane, since a slanted ray meets it earlier or later by 1/cos of the error.
+        const glm::dvec3 area = glm::cross(glm::dvec3(light.edge1), glm::dvec3(light.edge2));
+        reach = 1.0 - error * std::sqrt(glm::dot(area, area)) / std::abs(glm::dot(area, d));
+    }
+    // A receiver that close to the light has nothing in between. (Also for NaN, where edges are parallel.)
+    return reach > 0.0 ? static_cast<float>(reach) : 0.0f;
+}
+
 Light without_area(const Light& light) {
     Light hard = light;
     if (light.shape == Light::Shape::point) {

@@ -46,6 +46,11 @@ struct LightSample {
 // The point that u of the unit square chooses; u = (1/2, 1/2) gives the centre of points, quads and spreads.
 [[nodiscard]] LightSample sample_light(const Light& light, glm::vec3 receiver, glm::vec2 u) noexcept;
 
+// How far a shadow ray looks, in lengths of `direction`, which leads from `origin` to a sampled point of the light.
+// A light with area may be geometry of its own: the ray ends short of its surface by the rounding of the coordinates. A true
+// point has no surface: the ray ends that much past it, so that what touches the point shadows it.
+[[nodiscard]] float shadow_reach(const Light& light, glm::vec3 origin, glm::vec3 direction) noexcept;
+
 // The same light without extent, for hard shadows: same colour, same light at a distance.
 [[nodiscard]] Light without_area(const Light& light);
 

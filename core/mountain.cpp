@@ -76,8 +76,10 @@ private:
         const double right = (c.lower_right + c.upper_right) / 2.0 + rise * deviate(x + width, y + h);
         const double upper = (c.upper_right + c.upper_left) / 2.0 + rise * deviate(x + h, y + width);
         const double left = (c.upper_left + c.lower_left) / 2.0 + rise * deviate(x, y + h);
-        const double middle = (c.lower_left + c.lower_right + c.upper_right + c.upper_left) / 4.0 +
-                              glm::root_two<double>() * rise * deviate(x + h, y + h);
+        // The root of 2 as SPD writes it: with more digits some heights differ in the last place that the files print.
+        constexpr double kDiagonal = 1.4142136;
+        const double middle =
+            (c.lower_left + c.lower_right + c.upper_right + c.upper_left) / 4.0 + kDiagonal * rise * deviate(x + h, y + h);
         divide(h, x, y, {c.lower_left, lower, middle, left});
         divide(h, x + h, y, {lower, c.lower_right, right, middle});
         divide(h, x + h, y + h, {middle, right, c.upper_right, upper});

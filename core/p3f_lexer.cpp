@@ -105,8 +105,8 @@ void Lexer::skip_line() {
 void Lexer::missing(std::string_view what, std::size_t needed, std::size_t found) const {
     const Token token = peek();
     const std::string where = token.end() ? "the end of the file" : in_quotes(token.text);
-    messages_->fail(last_line_, fmt::format("{} needs {} number{}, found {} before {}", what, needed, needed == 1 ? "" : "s",
-                                            found, where));
+    messages_->fail(last_line_,
+                    fmt::format("{} needs {} number{}, found {} before {}", what, needed, needed == 1 ? "" : "s", found, where));
 }
 
 double Lexer::checked(double value, const Token& token) const {

@@ -16,9 +16,9 @@ using Index = std::uint32_t;
 
 // What of one statement was not a proper surface, told in one line however many faces it has.
 struct Flaws {
-    std::size_t faces = 0;      // announced
-    std::size_t dropped = 0;    // without area
-    std::size_t crossing = 0;   // outlines that cross themselves
+    std::size_t faces = 0;     // announced
+    std::size_t dropped = 0;   // without area
+    std::size_t crossing = 0;  // outlines that cross themselves
 
     void warn(Messages& messages, const Token& word) const {
         const std::string what = in_quotes(word.text);

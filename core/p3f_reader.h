@@ -21,13 +21,13 @@ struct Reader {
     std::filesystem::path folder;  // of the scene; names in the file lead nowhere else
 
     View view{};
-    bool view_open = false;         // inside `v`: its words count even where their numbers are missing
-    bool renamed_dialect = false;   // a word of the 2025 hand-out was seen, where the lens size is a diameter
-    std::string environment{};      // as `env` names it; empty = none
+    bool view_open = false;        // inside `v`: its words count even where their numbers are missing
+    bool renamed_dialect = false;  // a word of the 2025 hand-out was seen, where the lens size is a diameter
+    std::string environment{};     // as `env` names it; empty = none
     std::size_t environment_line = 0;
-    Material material{};            // of the shapes that follow
+    Material material{};                            // of the shapes that follow
     std::optional<std::uint32_t> material_index{};  // once a shape has used it
-    std::size_t ply_bytes = 0;      // read so far by `ply`
+    std::size_t ply_bytes = 0;                      // read so far by `ply`
 
     [[nodiscard]] std::uint32_t current_material() {
         if (!material_index) material_index = builder.add_material(material);

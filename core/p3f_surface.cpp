@@ -67,7 +67,8 @@ void read_material(Reader& r, const Token& word) {
         r.messages.warn(word.line, fmt::format("{} lets light through with an index of refraction of 0, 1 is used", what));
     }
     // Each factor fits a float, their product need not.
-    if (!valid_vertex(m.diffuse) || !valid_vertex(m.specular)) r.messages.fail(r.in.line(), fmt::format("{} is too bright", what));
+    if (!valid_vertex(m.diffuse) || !valid_vertex(m.specular))
+        r.messages.fail(r.in.line(), fmt::format("{} is too bright", what));
     r.material = m;
     r.material_index.reset();
 }

@@ -124,14 +124,7 @@ private:
             ray.direction = l.wi;
         } else {
             ray.direction = l.point - ray.origin;
-            ray.t_max = 1.0f;
-            if (light.has_area()) {
-                // The light may be geometry of its own. Its sampled point is off by the rounding of its coordinates, so
-                // the ray ends that much before it.
-                const glm::vec3 size = glm::abs(l.point) + glm::abs(ray.origin);
-                const float error = 0x1p-20f * std::max(size.x, std::max(size.y, size.z));
-                ray.t_max = 1.0f - error / std::sqrt(glm::dot(ray.direction, ray.direction));
-            }
+            ray.t_max = shadow_reach(light, ray.origin, ray.direction);
         }
         return accelerator_.occluded(ray);
     }
@@ -184,7 +177,7 @@ private:
         const double eta = static_cast<double>(ior_from) / static_cast<double>(ior_of(beyond.top()));
         const double cos_i = std::min(1.0, static_cast<double>(glm::dot(wo, s.ns)));
         const double reflected = plan_.fresnel == Fresnel::exact ? fresnel_dielectric(cos_i, eta) : fresnel_schlick(cos_i, eta);
-        if (plan_.refractions && transmitted_sin2(cos_i, eta) < 1.0) {
+        if (plan_.refractions && transmitted_cos2(cos_i, eta) > 0.0) {
             const glm::vec3 weight = m.transmittance * static_cast<float>(1.0 - reflected);
             follow(branch, s, -s.ng, refract(wo, s.ns, eta), weight, beyond, 1, work_.counts.refraction);
         }

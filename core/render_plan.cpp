@@ -123,7 +123,8 @@ RenderPlan plan_render(const Scene& scene, const RenderSettings& settings, const
         plan.kernel |= kernel_part::soft;
     }
 
-    if (plan.reflections && has_mirror(scene) && plan.depth > 0) {
+    // At depth 0 too: the integrator counts what the limit cuts off.
+    if (plan.reflections && has_mirror(scene)) {
         plan.kernel |= kernel_part::mirror;
         if (wants(Feature::fuzzy)) {
             if (settings.roughness) plan.forced_fuzz = *settings.roughness;

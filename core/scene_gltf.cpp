@@ -188,7 +188,12 @@ std::shared_ptr<const Scene> reader::read_gltf(const std::filesystem::path& path
     scene.transfer = Transfer::srgb;
     GltfMeshReader meshes(model, builder, report);
     std::vector<PlacedCamera> cameras;
-    walk(model, root_nodes(model, report), report, [&](int index, const glm::dmat4& world_from_node) {
+    const std::vector<int> roots = root_nodes(model, report);
+    walk(model, roots, report, [&](int index, const glm::dmat4&) {
+        const int mesh = model.nodes[static_cast<std::size_t>(index)].mesh;
+        if (mesh >= 0) meshes.reserve(mesh);
+    });
+    walk(model, roots, report, [&](int index, const glm::dmat4& world_from_node) {
         const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];
         if (node.mesh >= 0) meshes.add(node.mesh, world_from_node);
         if (node.camera >= 0) cameras.push_back({index, node.camera, world_from_node});

@@ -40,7 +40,8 @@ bool starts_statement(const Reader& r, const Token& token) {
 
 void skip_unknown(Reader& r, const Token& word) {
     const bool number = to_number(word.text).has_value();
-    r.messages.warn(word.line, fmt::format("{} {}, skipped", number ? "unexpected number" : "unknown word", in_quotes(word.text)));
+    r.messages.warn(word.line,
+                    fmt::format("{} {}, skipped", number ? "unexpected number" : "unknown word", in_quotes(word.text)));
     for (;;) {
         const Lexer before = r.in;
         const Token token = r.in.next();
@@ -74,7 +75,8 @@ bool read_statement(Reader& r, const Token& word) {
 
 void load_sky_box(Reader& r) {
     const auto skip = [&](std::string_view why) {
-        r.messages.warn(r.environment_line, fmt::format("env {}: {}, the background colour is used", in_quotes(r.environment), why));
+        r.messages.warn(r.environment_line,
+                        fmt::format("env {}: {}, the background colour is used", in_quotes(r.environment), why));
     };
     const auto folder = path_below(r.folder, r.environment);
     if (!folder) return skip("no such folder below the scene's own");
@@ -116,8 +118,8 @@ void read_statements(Reader& r) {
 
 }  // namespace
 
-std::shared_ptr<const Scene> reader::read_p3f(std::string_view text, const std::string& name,
-                                              const std::filesystem::path& folder, const LoadOptions& options) {
+std::shared_ptr<const Scene> reader::read_p3f(std::string_view text, const std::string& name, const std::filesystem::path& folder,
+                                              const LoadOptions& options) {
     Messages messages(name);
     refuse_binary(text, messages);
     Lexer lexer(text, messages);

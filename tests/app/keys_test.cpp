@@ -27,7 +27,8 @@ KeyMap dvorak() { return keyboard("QWERTYUIOPASDFGHJKL;ZXCVBNM,./'", "',.PYFGCRL
 
 TEST(Keys, NoKeyIsBoundTwice) {
     std::set<std::pair<int, bool>> keys;
-    for (const KeyBinding& row : key_table()) EXPECT_TRUE(keys.insert({row.key, row.rule == KeyRule::control}).second) << row.label;
+    for (const KeyBinding& row : key_table())
+        EXPECT_TRUE(keys.insert({row.key, row.rule == KeyRule::control}).second) << row.label;
 }
 
 TEST(Keys, EveryActionHasOneHelpTextAndALabel) {

@@ -9,13 +9,13 @@ namespace {
 std::shared_ptr<const Scene> ball(const Material& material, bool light = true) {
     SceneBuilder builder;
     builder.add(Sphere{{0, 0, 0}, 1.0f}, builder.add_material(material));
-    builder.scene().name = "ball.p3f";
+    builder.scene().name = "some/folder/ball.p3f";
     builder.scene().cameras.push_back(CameraPose{});
     if (light) builder.scene().lights.push_back(Light{});
     return builder.finish();
 }
 
-Material mirror_glass_free(float mirror) {
+Material mirror(float mirror) {
     Material m;
     m.mirror = glm::vec3(mirror);
     return m;
@@ -43,7 +43,7 @@ struct Builds {
 
 class SessionTest : public testing::Test {
 protected:
-    SessionTest() { use(ball(mirror_glass_free(0.5f))); }
+    SessionTest() { use(ball(mirror(0.5f))); }
 
     void use(std::shared_ptr<const Scene> scene) {
         builds.scene = scene;
@@ -78,8 +78,10 @@ TEST_F(SessionTest, FirstFrameCarriesWhatIsWanted) {
 }
 
 TEST_F(SessionTest, EachFeatureKeyChangesExactlyItsFeatureAndBack) {
-    const std::pair<Action, Feature> keys[] = {{Action::toggle_dof, Feature::dof}, {Action::toggle_soft, Feature::soft},
-                                               {Action::toggle_fuzzy, Feature::fuzzy}, {Action::toggle_aa, Feature::aa}};
+    const std::pair<Action, Feature> keys[] = {{Action::toggle_dof, Feature::dof},
+                                               {Action::toggle_soft, Feature::soft},
+                                               {Action::toggle_fuzzy, Feature::fuzzy},
+                                               {Action::toggle_aa, Feature::aa}};
     for (const auto& [action, feature] : keys) {
         const Choices before = session->choices();
         Choices expected = before;
@@ -118,11 +120,11 @@ TEST_F(SessionTest, EveryOtherKeyChangesExactlyItsSetting) {
 }
 
 TEST_F(SessionTest, ToggleThatCannotActSaysWhyAndChangesNothing) {
-    use(ball(mirror_glass_free(0.0f), false));
+    use(ball(mirror(0.0f), false));
     (void)session->next_frame({});
     const Choices before = session->choices();
-    const std::pair<Action, std::string> cases[] = {{Action::toggle_fuzzy, "mirror"}, {Action::toggle_soft, "light"},
-                                                    {Action::toggle_fresnel, "glass"}};
+    const std::pair<Action, std::string> cases[] = {
+        {Action::toggle_fuzzy, "mirror"}, {Action::toggle_soft, "light"}, {Action::toggle_fresnel, "glass"}};
     for (const auto& [action, word] : cases) {
         session->apply(action);
         EXPECT_EQ(session->choices(), before);
@@ -276,12 +278,11 @@ TEST_F(SessionTest, PausedWorkersStillMakeThePreviewOfAChange) {
 
 TEST_F(SessionTest, TitleNamesSceneAcceleratorSamplesSpeedAndFeatures) {
     ASSERT_TRUE(session->next_frame({}));
-    Progress p;
-    p.spp_min = 37;
-    p.seconds = 2.0;
+    Progress p{.spp_min = 37, .seconds = 2.0, .rays = {}};
     p.rays.camera = 10'200'000;
     const std::string title = session->title(p);
-    for (const char* part : {"glint \u2014 ball.p3f \u2014 bvh \u2014 37 spp \u2014 5.1 Mrays/s \u2014 aa", "shadows", "reflections"})
+    for (const char* part :
+         {"glint \u2014 ball.p3f \u2014 bvh \u2014 37 spp \u2014 5.1 Mrays/s \u2014 aa", "shadows", "reflections"})
         EXPECT_NE(title.find(part), std::string::npos) << title;
     EXPECT_EQ(title.find("dof"), std::string::npos) << title;
     EXPECT_EQ(title.find("converged"), std::string::npos) << title;

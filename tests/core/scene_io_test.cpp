@@ -63,7 +63,7 @@ TEST_F(SceneDoor, ReadsOnlyRegularFilesUpToALimit) {
 
 TEST_F(SceneDoor, ChoosesTheReaderByTheEndingInAnyCase) {
     const std::string text =
-        "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 1\nresolution 8 8\nf 1 1 1 1 0 0 1\ns 0 0 0 1\n";
+        "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 1\nresolution 8 8\nf 1 1 1 1 0 0 0 1\ns 0 0 0 1\n";
     for (const char* name : {"a.nff", "a.p3f", "a.P3F"})
         EXPECT_EQ(load_scene(write(name, text))->geometry->spheres.size(), 1u) << name;
 }

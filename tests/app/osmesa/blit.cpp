@@ -20,8 +20,18 @@ class Memory {
 public:
     Memory(int width, int height)
         : width_(width), height_(height), rgba_(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0x55) {
-        const int attributes[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 0, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                                  OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0, 0};
+        const int attributes[] = {OSMESA_FORMAT,
+                                  OSMESA_RGBA,
+                                  OSMESA_DEPTH_BITS,
+                                  0,
+                                  OSMESA_PROFILE,
+                                  OSMESA_CORE_PROFILE,
+                                  OSMESA_CONTEXT_MAJOR_VERSION,
+                                  3,
+                                  OSMESA_CONTEXT_MINOR_VERSION,
+                                  3,
+                                  0,
+                                  0};
         context_ = OSMesaCreateContextAttribs(attributes, nullptr);
         if (context_ == nullptr || !OSMesaMakeCurrent(context_, rgba_.data(), GL_UNSIGNED_BYTE, width, height))
             throw std::runtime_error("OSMesa has no OpenGL 3.3");
@@ -36,7 +46,8 @@ public:
         Image8 image{width_, height_, {}};
         for (int y = height_ - 1; y >= 0; --y) {
             for (int x = 0; x < width_; ++x) {
-                const std::uint8_t* pixel = rgba_.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
+                const std::uint8_t* pixel = rgba_.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                                                                static_cast<std::size_t>(x));
                 image.rgb.insert(image.rgb.end(), pixel, pixel + 3);
                 EXPECT_EQ(pixel[3], 255);
             }
@@ -73,8 +84,11 @@ TEST_P(BlitSize, PictureOfTheFramebuffersSizeArrivesByteForByte) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OddAndEven, BlitSize,
-                         testing::Values(std::pair{256, 64}, std::pair{101, 67}, std::pair{1, 1}, std::pair{3, 2}, std::pair{1027, 5}),
-                         [](const auto& tested) { return std::to_string(tested.param.first) + "x" + std::to_string(tested.param.second); });
+                         testing::Values(std::pair{256, 64}, std::pair{101, 67}, std::pair{1, 1}, std::pair{3, 2},
+                                         std::pair{1027, 5}),
+                         [](const auto& tested) {
+                             return std::to_string(tested.param.first) + "x" + std::to_string(tested.param.second);
+                         });
 
 TEST(Blit, SmallerPictureIsEnlargedInItsShapeOnBlack) {
     const Memory memory(40, 40);

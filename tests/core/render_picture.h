@@ -1,0 +1,43 @@
+// Renders a scene to an image the way `glint render` does: for tests of whole pictures.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/accelerator_cache.h"
+#include "core/renderer.h"
+#include "core/scene_io.h"
+
+namespace glint {
+
+struct Picture {
+    int width = 64, height = 64, spp = 1, threads = 2;
+    AcceleratorKind accelerator = AcceleratorKind::bvh;
+    RenderSettings settings;
+};
+
+inline Image render_picture(const std::shared_ptr<const Scene>& scene, const Picture& p, Progress* progress = nullptr) {
+    Renderer renderer(p.threads, false);
+    Frame frame;
+    frame.scene = scene;
+    frame.accelerator = build_accelerator(p.accelerator, scene->geometry);
+    frame.camera = scene->cameras.front();
+    frame.settings = p.settings;
+    frame.width = p.width;
+    frame.height = p.height;
+    frame.spp = p.spp;
+    renderer.restart(frame);
+    renderer.wait(1e9, nullptr);
+    Image image;
+    EXPECT_TRUE(renderer.resolve(image));
+    if (progress != nullptr) *progress = renderer.progress();
+    return image;
+}
+
+// Number of pixels that are not equal to the bit.
+inline std::size_t differing_pixels(const Image& a, const Image& b) {
+    if (a.width != b.width || a.height != b.height) return ~std::size_t{0};
+    return difference(a, b).differing;
+}
+
+}  // namespace glint
