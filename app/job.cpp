@@ -38,6 +38,20 @@ int quota_threads(int cores) {
     return std::clamp(static_cast<int>(quota / period + 0.5), 1, cores);
 }
 
+// `--background environment` in a scene that has none: the procedural sky, the right way up, with its sun at the first light.
+std::shared_ptr<const Scene> with_sky(const Scene& scene) {
+    auto copy = std::make_shared<Scene>(scene);
+    copy->environment.kind = Environment::Kind::sky;
+    copy->environment.up = glm::normalize(scene.cameras.front().up);
+    copy->environment.sun_direction = copy->environment.up;
+    if (!scene.lights.empty()) {
+        const Light& l = scene.lights.front();
+        const glm::vec3 to = l.shape == Light::Shape::directional ? -l.direction : l.position - scene.cameras.front().target;
+        if (to != glm::vec3(0.0f)) copy->environment.sun_direction = glm::normalize(to);
+    }
+    return copy;
+}
+
 }  // namespace
 
 int available_threads() {
@@ -64,6 +78,9 @@ Job prepare_job(const Options& o, const std::string& scene) {
     load.environment = o.environment;
     Job job;
     job.scene = load_scene(scene, load);
+    if (o.settings.background == Background::environment && job.scene->environment.kind == Environment::Kind::color) {
+        job.scene = with_sky(*job.scene);
+    }
     const Scene& s = *job.scene;
     job.settings = o.settings;
     job.settings.features = features_of(s);

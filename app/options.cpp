@@ -127,7 +127,7 @@ public:
         });
         text("--camera-index", "N", "the scene's camera to use, from 0",
              [this](auto n, auto v) { o_.camera_index = number(n, v, 0, 1 << 20, "a camera's number"); });
-        text("--background", "scene|color|environment", "what rays see that hit nothing", [this](auto n, auto v) {
+        text("--background", "scene|color|environment", "what rays see that hit nothing; environment = a procedural sky where the scene has none", [this](auto n, auto v) {
             o_.settings.background =
                 static_cast<Background>(choice(n, v, std::array<std::string_view, 3>{"scene", "color", "environment"}));
         });

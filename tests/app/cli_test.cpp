@@ -193,6 +193,15 @@ TEST_F(CommandLine, CameraOptionsMoveTheCamera) {
     EXPECT_NE(contents(path("a.png")), contents(path("b.png")));
 }
 
+TEST_F(CommandLine, ASceneWithoutEnvironmentCanHaveTheProceduralSky) {
+    ASSERT_EQ(glint(quick + "-o " + path("a.png")).code, 0);
+    ASSERT_EQ(glint(quick + "--background color -o " + path("b.png")).code, 0);
+    ASSERT_EQ(glint(quick + "--background environment -o " + path("c.png")).code, 0);
+    EXPECT_EQ(contents(path("a.png")), contents(path("b.png")));
+    EXPECT_NE(contents(path("a.png")), contents(path("c.png")));
+    expect_refused(quick + "-o x.png --environment " + path("none"), 3, "none");
+}
+
 TEST_F(CommandLine, NamesAreFilledIn) {
     ASSERT_EQ(glint(quick + "--accel grid -o '" + path("{scene}-{accel}-{spp}.png") + "'").code, 0);
     EXPECT_TRUE(fs::exists(folder / "builtin_balls_level_1-grid-2.png"));
