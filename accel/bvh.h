@@ -16,8 +16,7 @@ constexpr int kBvhWidth = 8;
 constexpr int kMaxBvhDepth = 64;
 
 struct alignas(64) BvhNode {
-    float lo[3][kBvhWidth];  // an absent child has lo = +inf, hi = -inf and is never entered
-    float hi[3][kBvhWidth];
+    float bounds[6][kBvhWidth];  // lo x y z, hi x y z; an absent child has lo = +inf, hi = -inf and is never entered
     std::uint32_t child[kBvhWidth];  // inner: node index; leaf: first entry of ids
     std::uint32_t count[kBvhWidth];  // 0 = inner, else number of ids
 };

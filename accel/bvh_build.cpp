@@ -198,8 +198,8 @@ private:
                 BvhNode& wide = tree.nodes[task.wide];
                 const Aabb box = child != nullptr ? child->bounds : Aabb();
                 for (int axis = 0; axis < 3; ++axis) {
-                    wide.lo[axis][i] = box.lo[axis];
-                    wide.hi[axis][i] = box.hi[axis];
+                    wide.bounds[axis][i] = box.lo[axis];
+                    wide.bounds[3 + axis][i] = box.hi[axis];
                 }
                 wide.child[i] = child != nullptr && child->count > 0 ? child->first : index;
                 wide.count[i] = child != nullptr ? child->count : 0;

@@ -1,3 +1,6 @@
+#include <xmmintrin.h>
+
+#include <bit>
 #include <utility>
 
 #include "accel/bvh.h"
@@ -14,20 +17,41 @@ struct StackEntry {
 // Each level leaves at most seven siblings behind.
 constexpr int kStackSize = kMaxBvhDepth * (kBvhWidth - 1) + 1;
 
-// The same arithmetic as slab_interval(), for all children at once in a form that compilers turn into SIMD.
-void child_intervals(const PreparedRay& ray, const BvhNode& node, float (&near)[kBvhWidth], float (&far)[kBvhWidth]) noexcept {
-    for (int i = 0; i < 3; ++i) {
-        const bool forward = ray.reciprocal[i] >= 0.0f;
-        const float* lo = forward ? node.lo[i] : node.hi[i];
-        const float* hi = forward ? node.hi[i] : node.lo[i];
-        const float r = ray.reciprocal[i], near_offset = ray.near_offset[i], far_offset = ray.far_offset[i];
-        for (int k = 0; k < kBvhWidth; ++k) {
-            const float n = lo[k] * r - near_offset;
-            const float f = hi[k] * r - far_offset;
-            near[k] = i == 0 ? n : (n > near[k] ? n : near[k]);
-            far[k] = i == 0 ? f : (f < far[k] ? f : far[k]);
+// What slab_interval() reads of a ray, spread over four lanes once per query, with the rows of a node's bounds (0-2 lo,
+// 3-5 hi) that the ray meets first and last. SSE belongs to every x86-64.
+struct SlabLanes {
+    __m128 reciprocal[3], near_offset[3], far_offset[3];
+    int near_row[3], far_row[3];
+
+    explicit SlabLanes(const PreparedRay& ray) noexcept {
+        for (int i = 0; i < 3; ++i) {
+            reciprocal[i] = _mm_set1_ps(ray.reciprocal[i]);
+            near_offset[i] = _mm_set1_ps(ray.near_offset[i]);
+            far_offset[i] = _mm_set1_ps(ray.far_offset[i]);
+            const bool forward = ray.reciprocal[i] >= 0.0f;
+            near_row[i] = forward ? i : 3 + i;
+            far_row[i] = forward ? 3 + i : i;
         }
     }
+};
+
+// The same arithmetic as slab_interval() for all children. A bit of the result is set for each child that the ray may
+// enter before `limit`; the near distances are stored.
+inline unsigned entered_children(const SlabLanes& ray, const BvhNode& node, float limit, float (&near)[kBvhWidth]) noexcept {
+    unsigned mask = 0;
+    for (int half = 0; half < kBvhWidth; half += 4) {
+        __m128 n = _mm_set1_ps(-kInfinity), f = _mm_set1_ps(kInfinity);
+        for (int i = 0; i < 3; ++i) {
+            const __m128 first = _mm_load_ps(node.bounds[ray.near_row[i]] + half);
+            const __m128 last = _mm_load_ps(node.bounds[ray.far_row[i]] + half);
+            n = _mm_max_ps(_mm_sub_ps(_mm_mul_ps(first, ray.reciprocal[i]), ray.near_offset[i]), n);
+            f = _mm_min_ps(_mm_sub_ps(_mm_mul_ps(last, ray.reciprocal[i]), ray.far_offset[i]), f);
+        }
+        _mm_storeu_ps(near + half, n);
+        const __m128 ahead = _mm_and_ps(_mm_cmpge_ps(f, _mm_setzero_ps()), _mm_cmple_ps(n, _mm_set1_ps(limit)));
+        mask |= static_cast<unsigned>(_mm_movemask_ps(_mm_and_ps(_mm_cmple_ps(n, f), ahead))) << half;
+    }
+    return mask;
 }
 
 }  // namespace
@@ -41,6 +65,7 @@ Hit Bvh::traverse(const Ray& ray) const noexcept {
     const PreparedRay prepared(ray, magnitude_);
     Hit best = begin_query(prepared, *geometry_);
     if (!prepared.usable || tree_.nodes.empty() || (any && best.found())) return best;
+    const SlabLanes lanes(prepared);
     StackEntry stack[kStackSize];
     int top = 0;
     stack[top++] = {0.0f, 0, 0};
@@ -55,12 +80,11 @@ Hit Bvh::traverse(const Ray& ray) const noexcept {
             continue;
         }
         const BvhNode& node = tree_.nodes[entry.index];
-        float near[kBvhWidth], far[kBvhWidth];
-        child_intervals(prepared, node, near, far);
+        float near[kBvhWidth];
         // Children are pushed far to near, so that the nearest is popped first.
         const int bottom = top;
-        for (int k = 0; k < kBvhWidth; ++k) {
-            if (!(near[k] <= far[k] && far[k] >= 0.0f && near[k] <= best.t)) continue;
+        for (unsigned mask = entered_children(lanes, node, best.t, near); mask != 0; mask &= mask - 1) {
+            const int k = std::countr_zero(mask);
             int at = top++;
             if (!any) {
                 for (; at > bottom && stack[at - 1].near < near[k]; --at) stack[at] = stack[at - 1];

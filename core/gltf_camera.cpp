@@ -59,7 +59,7 @@ std::optional<CameraPose> gltf_camera(const tinygltf::Camera& camera, const glm:
     return pose;
 }
 
-CameraPose framing_camera(const Aabb& bounds) {
+CameraPose framing_camera(const std::vector<glm::vec3>& vertices, const Aabb& bounds) {
     CameraPose pose;
     if (bounds.empty()) return pose;
     // Models face +z (glTF 2.0, section 3.4), so the viewer stands there, a little to the right and above.
@@ -70,10 +70,10 @@ CameraPose framing_camera(const Aabb& bounds) {
     const glm::dvec3 up = glm::cross(back, right);
     const double half_height = std::tan(0.5 * static_cast<double>(pose.view_angle) / kDegrees);
     const double half_width = half_height * 4.0 / 3.0;
-    const glm::dvec3 lo(bounds.lo), hi(bounds.hi), center = 0.5 * (lo + hi);
+    const glm::dvec3 center = 0.5 * (glm::dvec3(bounds.lo) + glm::dvec3(bounds.hi));
     double distance = 0.0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p = glm::dvec3(corner & 1 ? hi.x : lo.x, corner & 2 ? hi.y : lo.y, corner & 4 ? hi.z : lo.z) - center;
+    for (const glm::vec3 v : vertices) {
+        const glm::dvec3 p = glm::dvec3(v) - center;
         const double across = std::max(std::abs(glm::dot(p, right)) / half_width, std::abs(glm::dot(p, up)) / half_height);
         distance = std::max(distance, kMargin * across + glm::dot(p, back));
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <tiny_gltf.h>
 #include <glm/glm.hpp>
@@ -17,7 +18,7 @@ namespace glint {
 [[nodiscard]] std::optional<CameraPose> gltf_camera(const tinygltf::Camera& camera, const glm::dmat4& world_from_camera,
                                                     const Aabb& bounds, GltfReport& report);
 
-// The bounds from three quarters, a little from above, filling pictures from 4:3 on.
-[[nodiscard]] CameraPose framing_camera(const Aabb& bounds);
+// All vertices from three quarters, a little from above; they just fit into pictures from 4:3 on.
+[[nodiscard]] CameraPose framing_camera(const std::vector<glm::vec3>& vertices, const Aabb& bounds);
 
 }  // namespace glint

@@ -108,9 +108,9 @@ void finish_gltf_light(Scene& scene, GltfReport& report) {
     // Bright and nearly grey: metals need something to reflect, and a picture of a model is about the model.
     Environment& sky = scene.environment;
     sky.kind = Environment::Kind::sky;
-    sky.zenith = glm::vec3(0.38f, 0.47f, 0.62f);
-    sky.horizon = glm::vec3(0.78f, 0.82f, 0.86f);
-    sky.ground = glm::vec3(0.26f, 0.25f, 0.24f);
+    sky.zenith = glm::vec3(0.30f, 0.40f, 0.56f);
+    sky.horizon = glm::vec3(0.70f, 0.75f, 0.80f);
+    sky.ground = glm::vec3(0.15f, 0.145f, 0.14f);
     if (!scene.lights.empty()) return;
     add_default_sun(scene);
     report.warn("no light: a sun over the camera's shoulder and a sky are added");

@@ -16,8 +16,8 @@ namespace {
 // over a = 0.0025 ... 1 and 0, 30, 60 degrees of incidence) is least at 3.0, where it is 4.4 degrees, at worst 8.
 constexpr double kFuzzPerAlpha = 3.0;
 // Below this a the highlight of a point light becomes narrower than a pixel is wide; the mirror branch shows what a smooth
-// surface reflects, so the exponent stops here (2050).
-constexpr double kLeastHighlightAlpha = 1.0 / 32.0;
+// surface reflects, so the exponent stops here (514).
+constexpr double kLeastHighlightAlpha = 1.0 / 16.0;
 
 // A number of the file, forced into [lo, hi] with a warning when it lies outside.
 double within(double x, double lo, double hi, const char* what, GltfReport& report) {

@@ -97,23 +97,24 @@ LightSample sample_light(const Light& light, glm::vec3 receiver, glm::vec2 u) no
 }
 
 float shadow_reach(const Light& light, glm::vec3 origin, glm::vec3 direction) noexcept {
-    const glm::vec3 size = glm::abs(origin + direction) + glm::abs(origin);
-    const double error = 0x1p-20 * static_cast<double>(std::max(size.x, std::max(size.y, size.z)));
-    const glm::dvec3 d(direction);
+    // The numbers that a float intersection with the light's own triangles subtracts; each such step errs by 2^-24 of them.
+    const glm::vec3 size = glm::abs(origin) + glm::abs(light.position) + glm::abs(light.edge1) + glm::abs(light.edge2);
+    const float error = 0x1p-20f * (std::max(size.x, std::max(size.y, size.z)) + light.radius);
     // What touches a true point shadows it: the ray ends past it, or rounding would decide pixel by pixel.
-    if (!light.has_area()) return static_cast<float>(1.0 + error / std::sqrt(glm::dot(d, d)));
+    if (!light.has_area()) return 1.0f + error / std::sqrt(glm::dot(direction, direction));
+    const glm::dvec3 d(direction);
     double reach = 0.0;
     if (light.shape == Light::Shape::sphere) {
         // Entry into a slightly larger ball: a ray that grazes the ball may enter it long before the sampled point.
         const glm::dvec3 to = glm::dvec3(light.position) - glm::dvec3(origin);
-        const double r = static_cast<double>(light.radius) + error, d2 = glm::dot(d, d);
+        const double r = static_cast<double>(light.radius) + static_cast<double>(error), d2 = glm::dot(d, d);
         const double nearest = glm::dot(to, d) / d2;
         const glm::dvec3 off = to - nearest * d;
         reach = nearest - std::sqrt(std::max(0.0, (r * r - glm::dot(off, off)) / d2));
     } else {
         // Measured across the plane, since a slanted ray meets it earlier or later by 1/cos of the error.
         const glm::dvec3 area = glm::cross(glm::dvec3(light.edge1), glm::dvec3(light.edge2));
-        reach = 1.0 - error * std::sqrt(glm::dot(area, area)) / std::abs(glm::dot(area, d));
+        reach = 1.0 - static_cast<double>(error) * std::sqrt(glm::dot(area, area)) / std::abs(glm::dot(area, d));
     }
     // A receiver that close to the light has nothing in between. (Also for NaN, where edges are parallel.)
     return reach > 0.0 ? static_cast<float>(reach) : 0.0f;

@@ -48,7 +48,8 @@ struct LightSample {
 
 // How far a shadow ray looks, in lengths of `direction`, which leads from `origin` to a sampled point of the light.
 // A light with area may be geometry of its own: the ray ends short of its surface by the rounding of the coordinates. A true
-// point has no surface: the ray ends that much past it, so that what touches the point shadows it.
+// point has no surface: the ray ends that much past it, so that what touches the point shadows it (not surely so where it is
+// triangles many times larger than their distance: their hits are less precise).
 [[nodiscard]] float shadow_reach(const Light& light, glm::vec3 origin, glm::vec3 direction) noexcept;
 
 // The same light without extent, for hard shadows: same colour, same light at a distance.

@@ -161,16 +161,14 @@ struct PlacedCamera {
 void add_cameras(const tinygltf::Model& model, std::vector<PlacedCamera> placed, SceneBuilder& builder, GltfReport& report) {
     std::sort(placed.begin(), placed.end(), [](const PlacedCamera& a, const PlacedCamera& b) { return a.node < b.node; });
     Aabb bounds;
-    for (const auto& triangle : builder.geometry().triangles) {
-        for (const std::uint32_t v : triangle) bounds.grow(builder.geometry().vertices[v]);
-    }
+    for (const glm::vec3 v : builder.geometry().vertices) bounds.grow(v);  // only vertices of triangles were stored
     auto& cameras = builder.scene().cameras;
     for (const PlacedCamera& p : placed) {
         const auto pose = gltf_camera(model.cameras.at(static_cast<std::size_t>(p.camera)), p.world_from_camera, bounds, report);
         if (pose) cameras.push_back(*pose);
     }
     if (!cameras.empty()) return;
-    cameras.push_back(framing_camera(bounds));
+    cameras.push_back(framing_camera(builder.geometry().vertices, bounds));
     report.warn("no camera: the whole scene is framed");
 }
 

@@ -1,0 +1,276 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+
+#include <gtest/gtest.h>
+
+#include "accel/accelerator.h"
+#include "tests/accel/adversarial_scenes.h"
+#include "tests/accel/hit_report.h"
+
+namespace glint {
+namespace {
+
+Aabb box_of(const BvhNode& node, int k) {
+    Aabb box;
+    for (int axis = 0; axis < 3; ++axis) box.lo[axis] = node.bounds[axis][k], box.hi[axis] = node.bounds[3 + axis][k];
+    return box;
+}
+bool absent(const BvhNode& node, int k) { return node.child[k] == 0 && node.count[k] == 0; }
+bool contains(const Aabb& outer, const Aabb& inner) {
+    return glm::all(glm::lessThanEqual(outer.lo, inner.lo)) && glm::all(glm::greaterThanEqual(outer.hi, inner.hi));
+}
+bool equal(const Aabb& a, const Aabb& b) { return a.lo == b.lo && a.hi == b.hi; }
+
+// Walks a tree and notes what breaks its invariants.
+struct Survey {
+    const Geometry& geometry;
+    const BvhTree& tree;
+    std::vector<int> node_visits, id_visits;
+    std::size_t loose_boxes = 0, large_leaves = 0;
+    int levels = 0;
+    double cost = 0.0;  // surface area heuristic: node visits and primitive tests of a random ray, times the root's area
+
+    Survey(const Geometry& g, const BvhTree& t) : geometry(g), tree(t), node_visits(t.nodes.size()), id_visits(t.ids.size()) {
+        if (!t.nodes.empty()) visit(0, 1);
+    }
+
+    // The bounds of everything below.
+    Aabb visit(std::uint32_t index, int level) {
+        levels = std::max(levels, level);
+        const BvhNode& node = tree.nodes[index];
+        Aabb all;
+        if (++node_visits[index] > 1) return all;
+        for (int k = 0; k < kBvhWidth; ++k) {
+            const Aabb box = box_of(node, k);
+            if (absent(node, k)) {
+                loose_boxes += box.empty() ? 0 : 1;
+                continue;
+            }
+            const Aabb below = node.count[k] > 0 ? leaf(node.child[k], node.count[k]) : visit(node.child[k], level + 1);
+            loose_boxes += equal(box, below) ? 0 : 1;
+            cost += static_cast<double>(box.half_area()) * (node.count[k] > 0 ? node.count[k] : 1.0);
+            all.grow(below);
+        }
+        return all;
+    }
+    Aabb leaf(std::uint32_t first, std::uint32_t count) {
+        large_leaves += count > 8 ? 1 : 0;
+        Aabb all;
+        for (std::uint32_t i = first; i < first + count; ++i) {
+            ++id_visits[i];
+            all.grow(geometry.bounds(tree.ids[i]));
+        }
+        return all;
+    }
+};
+
+void expect_sound(const Geometry& geometry, const BvhTree& tree) {
+    std::vector<PrimitiveId> ids = tree.ids;
+    std::sort(ids.begin(), ids.end());
+    EXPECT_EQ(ids, geometry.bounded_ids()) << "every id exactly once";
+    EXPECT_LE(tree.depth, kMaxBvhDepth);
+    const Survey survey(geometry, tree);
+    EXPECT_TRUE(std::ranges::all_of(survey.node_visits, [](int n) { return n == 1; })) << "a node is lost or shared";
+    EXPECT_TRUE(std::ranges::all_of(survey.id_visits, [](int n) { return n == 1; })) << "a leaf is lost or shared";
+    EXPECT_EQ(survey.loose_boxes, 0u) << "a child's box is not the bounds of what lies below";
+    EXPECT_EQ(survey.large_leaves, 0u);
+    EXPECT_LE(survey.levels, tree.depth);
+}
+
+Geometry spheres(std::size_t count, float radius_step) {
+    Geometry g;
+    for (std::size_t i = 0; i < count; ++i) g.spheres.push_back({glm::vec3(1.0f), 1.0f + radius_step * static_cast<float>(i)});
+    return g;
+}
+
+TEST(BvhTree, S_BVH_01_NoneOneAndTwoPrimitives) {
+    EXPECT_TRUE(build_bvh(Geometry()).nodes.empty());
+    EXPECT_TRUE(build_bvh(scenes::planes_only()).nodes.empty());
+    for (const std::size_t n : {1u, 2u, 8u, 9u}) {
+        for (const float step : {0.0f, 1.0f}) {
+            const Geometry g = spheres(n, step);
+            expect_sound(g, build_bvh(g));
+        }
+    }
+    const Bvh empty(std::make_shared<const Geometry>());
+    EXPECT_FALSE(empty.closest_hit({glm::vec3(0.0f), glm::vec3(1.0f)}).found());
+    EXPECT_FALSE(empty.occluded({glm::vec3(0.0f), glm::vec3(1.0f)}));
+}
+
+TEST(BvhTree, S_BVH_02_EqualCentroidsEndInSmallLeaves) {
+    const Geometry concentric = spheres(100000, 1.0e-3f), same = scenes::same_triangle_70000();
+    expect_sound(concentric, build_bvh(concentric));
+    expect_sound(same, build_bvh(same));
+    const Bvh bvh(std::make_shared<const Geometry>(concentric));
+    const Hit hit = bvh.closest_hit({glm::vec3(1.0f), glm::vec3(0.0f, 1.0f, 0.0f)});
+    EXPECT_EQ(hit.primitive, make_id(PrimitiveKind::sphere, 0)) << "the innermost";
+    EXPECT_EQ(hit.t, 1.0f);
+}
+
+TEST(BvhTree, S_BVH_03_DepthIsBoundedWherePrimitivesPeelOffOneByOne) {
+    Geometry g = scenes::powers_of_two();
+    expect_sound(g, build_bvh(g));
+    // Shrinking towards a corner in all directions, and many of each size.
+    Random random(3);
+    for (int i = -120; i < 58; ++i) {
+        for (int k = 0; k < 30; ++k) {
+            const float size = std::ldexp(1.0f, i);
+            g.spheres.push_back({size * random.in_cube(-1.0f, 1.0f), 0.1f * size});
+        }
+    }
+    const BvhTree tree = build_bvh(g);
+    expect_sound(g, tree);
+    EXPECT_GT(tree.depth, 32) << "not the depth this test is for";
+}
+
+// What one closest-hit query costs, by the rules of the traversal but without its order.
+double visits_per_ray(const BvhTree& tree) {
+    Random random(4);
+    std::size_t visits = 0;
+    constexpr int kRays = 500;
+    for (int i = 0; i < kRays; ++i) {
+        const PreparedRay ray({random.in_cube(-2.0f, 2.0f), random.direction()}, 2.0f);
+        std::vector<std::uint32_t> stack{0};
+        while (!stack.empty()) {
+            const BvhNode node = tree.nodes[stack.back()];
+            stack.pop_back();
+            ++visits;
+            for (int k = 0; k < kBvhWidth; ++k) {
+                const Interval inside = slab_interval(ray, box_of(node, k));
+                if (absent(node, k) || inside.empty() || inside.far < 0.0f) continue;
+                if (node.count[k] == 0) stack.push_back(node.child[k]);
+                visits += node.count[k];
+            }
+        }
+    }
+    return static_cast<double>(visits) / kRays;
+}
+
+TEST(BvhTree, S_BVH_04_OneHugeTriangleCostsLessThanThreefold) {
+    Geometry g = triangles_in_cube(4, 100000, glm::vec3(0.0f), 1.0f, 0.01f);
+    const double without = visits_per_ray(build_bvh(g));
+    add_triangle(g, glm::vec3(-500.0f, -500.0f, -500.0f), glm::vec3(500.0f, 499.0f, 500.0f), glm::vec3(0.0f, 300.0f, 5.0f));
+    const BvhTree with = build_bvh(g);
+    expect_sound(g, with);
+    EXPECT_LE(visits_per_ray(with), 3.0 * without);
+}
+
+TEST(BvhTree, S_BVH_05_WhatNoQueryCanAnswerIsInvalid) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const glm::vec3 a(0.0f), b(1.0f, 0.0f, 0.0f), c(0.0f, 1.0f, 0.0f);
+    EXPECT_TRUE(valid_triangle(a, b, c));
+    EXPECT_TRUE(valid_triangle(1.0e18f * a, 1.0e18f * b, 1.0e18f * c));
+    EXPECT_TRUE(valid_triangle(1.0e-30f * a, 1.0e-30f * b, 1.0e-30f * c));
+    for (const float bad : {nan, kInfinity, -kInfinity, 1.0e30f, -1.0e30f}) {
+        for (int axis = 0; axis < 3; ++axis) {
+            glm::vec3 p = c;
+            p[axis] = bad;
+            EXPECT_FALSE(valid_triangle(p, a, b)) << bad;
+            EXPECT_FALSE(valid_triangle(a, p, b)) << bad;
+            EXPECT_FALSE(valid_triangle(a, b, p)) << bad;
+            EXPECT_FALSE(valid(Cone{p, 1.0f, b, 1.0f})) << bad;
+            EXPECT_FALSE(valid(Cone{b, 1.0f, p, 1.0f})) << bad;
+        }
+        EXPECT_FALSE(valid(Cone{a, bad, b, 1.0f})) << bad;
+        EXPECT_FALSE(valid(Cone{a, 1.0f, b, bad})) << bad;
+    }
+    EXPECT_FALSE(valid(Cone{a, 1.0f, a, 1.0f}));
+    EXPECT_FALSE(valid(Cone{a, 0.0f, b, 0.0f}));
+    EXPECT_FALSE(valid(Cone{a, -1.0f, b, 2.0f}));
+}
+
+class OnScene : public testing::TestWithParam<AdversarialScene> {};
+
+// A tree of eight-fold object medians over the widest axis: three halvings a node, leaves of at most eight.
+class MedianTree {
+public:
+    explicit MedianTree(const Geometry& g) : geometry_(g), ids_(g.bounded_ids()) {}
+    double cost() { return ids_.empty() ? 0.0 : node({ids_}); }
+
+private:
+    using Ids = std::span<PrimitiveId>;
+
+    Aabb bounds(Ids ids) const {
+        Aabb box;
+        for (const PrimitiveId id : ids) box.grow(geometry_.bounds(id));
+        return box;
+    }
+    void halve(Ids ids, int times, std::vector<Ids>& parts) {
+        if (times == 0 || ids.size() < 2) return parts.push_back(ids);
+        Aabb centers;
+        for (const PrimitiveId id : ids) centers.grow(geometry_.bounds(id).center());
+        const glm::vec3 size = centers.size();
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const std::size_t half = ids.size() / 2;
+        std::ranges::nth_element(ids, ids.begin() + static_cast<std::ptrdiff_t>(half), {},
+                                 [&](PrimitiveId id) { return geometry_.bounds(id).center()[axis]; });
+        halve(ids.first(half), times - 1, parts);
+        halve(ids.subspan(half), times - 1, parts);
+    }
+    double node(Ids ids) {
+        std::vector<Ids> parts;
+        halve(ids, ids.size() > 8 ? 3 : 0, parts);
+        double sum = 0.0;
+        for (const Ids part : parts) {
+            const bool leaf = part.size() <= 8;
+            sum += static_cast<double>(bounds(part).half_area()) * (leaf ? static_cast<double>(part.size()) : 1.0);
+            if (!leaf) sum += node(part);
+        }
+        return sum;
+    }
+
+    const Geometry& geometry_;
+    std::vector<PrimitiveId> ids_;
+};
+
+TEST_P(OnScene, S_BVH_08_TheTreeIsSoundAndNoWorseThanMedians) {
+    const Geometry g = GetParam().build();
+    const BvhTree tree = build_bvh(g);
+    expect_sound(g, tree);
+    const double cost = Survey(g, tree).cost, median = MedianTree(g).cost();
+    EXPECT_LE(cost, 1.001 * median);
+}
+
+// The invariant that makes culling exact: a hit's t lies in the interval of every box above its primitive.
+TEST_P(OnScene, S_BOX_03_AHitLiesInTheIntervalOfEveryAncestor) {
+    const auto geometry = std::make_shared<const Geometry>(GetParam().build());
+    const BvhTree tree = build_bvh(*geometry);
+    const BruteForce truth(geometry);
+    const float magnitude = geometry->bounds().magnitude();
+    Random random(3);
+    const Aabb all = geometry->bounds();
+    const std::size_t rays = all.empty() ? 0 : std::min<std::size_t>(20000, 20000000 / geometry->bounded_count());
+    for (std::size_t i = 0; i < rays; ++i) {
+        const glm::vec3 target = all.lo + random.in_cube(0.0f, 1.0f) * all.size();
+        const glm::vec3 origin = all.center() + random.power_of_ten(-1.0f, 4.0f) * glm::length(all.size()) * random.direction();
+        const Ray ray{origin, (target - origin) / glm::length(target - origin)};
+        const Hit hit = truth.closest_hit(ray);
+        if (!hit.found() || kind_of(hit.primitive) == PrimitiveKind::plane) continue;
+        const Aabb bounds = geometry->bounds(hit.primitive);
+        const PreparedRay prepared(ray, magnitude);
+        std::size_t leaves = 0;
+        std::vector<std::uint32_t> stack{0};
+        while (!stack.empty()) {
+            const BvhNode node = tree.nodes[stack.back()];
+            stack.pop_back();
+            for (int k = 0; k < kBvhWidth; ++k) {
+                if (absent(node, k) || !contains(box_of(node, k), bounds)) continue;
+                const Interval inside = slab_interval(prepared, box_of(node, k));
+                ASSERT_LE(inside.near, hit.t) << text(ray);
+                ASSERT_GE(inside.far, hit.t) << text(ray);
+                if (node.count[k] == 0) stack.push_back(node.child[k]);
+                const auto* first = tree.ids.data() + node.child[k];
+                leaves += std::count(first, first + node.count[k], hit.primitive) > 0 ? 1 : 0;
+            }
+        }
+        ASSERT_EQ(leaves, 1u) << text(ray);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, OnScene, testing::ValuesIn(kAdversarialScenes),
+                         [](const testing::TestParamInfo<AdversarialScene>& scene) { return std::string(scene.param.name); });
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,172 @@
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "accel/accelerator.h"
+#include "tests/accel/adversarial_scenes.h"
+#include "tests/accel/hit_report.h"
+
+namespace glint {
+namespace {
+
+std::size_t cells_of(const UniformGrid& grid) {
+    const glm::ivec3 n = grid.resolution();
+    return static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z);
+}
+
+void expect_same(const UniformGrid& grid, const BruteForce& truth, const Ray& ray) {
+    const Hit expected = truth.closest_hit(ray), hit = grid.closest_hit(ray);
+    ASSERT_TRUE(same(hit, expected)) << text(ray) << "\n" << text(hit) << "\n" << text(expected);
+    ASSERT_EQ(grid.occluded(ray), expected.found()) << text(ray);
+}
+
+TEST(Grid, S_GRD_01_AHitInALaterCellDoesNotEndTheWalk) {
+    auto geometry = std::make_shared<Geometry>();
+    add_triangle(*geometry, glm::vec3(0.0f, 0.0f, 0.5f), glm::vec3(3.0f, 0.6f, 0.0f), glm::vec3(3.0f, 0.6f, 1.0f));
+    geometry->spheres = {{glm::vec3(1.5f, 0.5f, 0.5f), 0.2f}};
+    const UniformGrid grid(geometry);
+    ASSERT_GE(grid.resolution().x, 3) << "too coarse to test anything";
+    const Hit hit = grid.closest_hit({glm::vec3(-1.0f, 0.5f, 0.5f), glm::vec3(1.0f, 0.0f, 0.0f)});
+    EXPECT_EQ(hit.primitive, make_id(PrimitiveKind::sphere, 0));
+    EXPECT_FLOAT_EQ(hit.t, 2.3f);
+}
+
+// A lattice of spheres and triangles whose cells' faces, edges and corners the rays follow.
+TEST(Grid, S_GRD_02_RaysAlongFacesEdgesAndCornersOfCells) {
+    auto geometry = std::make_shared<Geometry>();
+    for (int i = 0; i < 125; ++i) {
+        const glm::vec3 p(i % 5, i / 5 % 5, i / 25);
+        geometry->spheres.push_back({p, i % 2 == 0 ? 0.5f : 0.2f});
+        add_triangle(*geometry, p, p + glm::vec3(1.0f, 0.0f, 0.0f), p + glm::vec3(0.0f, 1.0f, 0.0f));
+    }
+    const UniformGrid grid(geometry);
+    const BruteForce truth(geometry);
+    Random random(2);
+    const auto coin = [&random] { return random.below(2) == 0; };
+    const auto corner = [&] {
+        glm::ivec3 cell;
+        for (int k = 0; k < 3; ++k) cell[k] = static_cast<int>(random.below(static_cast<std::size_t>(grid.resolution()[k]) + 1));
+        return glm::vec3(grid.corner(cell));
+    };
+    for (int i = 0; i < 100000; ++i) {
+        const auto axis = static_cast<int>(random.below(3));
+        Ray ray{corner(), random.direction()};
+        switch (i % 5) {
+            case 0: ray.direction[axis] = coin() ? 0.0f : -0.0f; break;  // within a face
+            case 1:                                                      // along an edge
+                ray.direction = glm::vec3(coin() ? 0.0f : -0.0f);
+                ray.direction[axis] = coin() ? 1.0f : -1.0f;
+                break;
+            case 2: ray.direction = glm::vec3(coin() ? 1.0f : -1.0f, 1.0f, coin() ? 1.0f : -1.0f); break;  // through corners
+            case 3: {                                                                                      // corner to corner
+                const glm::vec3 to = corner();
+                if (to != ray.origin) ray.direction = to - ray.origin;
+                break;
+            }
+            default: ray.direction[axis] *= 1.0e-20f; break;  // all but within a face
+        }
+        if (coin()) ray.origin -= static_cast<float>(random.below(8)) * ray.direction;
+        if (coin()) ray.t_max = random.uniform(0.1f, 6.0f);
+        ASSERT_NO_FATAL_FAILURE(expect_same(grid, truth, ray));
+    }
+}
+
+TEST(Grid, S_GRD_03_TheEndOfARowOfTenThousandIsReached) {
+    const auto geometry = std::make_shared<const Geometry>(scenes::sphere_row());
+    const UniformGrid grid(geometry);
+    ASSERT_GE(grid.resolution().x, 4000);
+    // Down the row just above the spheres, dipping into one far away.
+    for (int i = 0; i < 10000; i += 7) {
+        const double x = 0.1 * i;
+        const glm::dvec3 from(-1.0, 0.0401, 0.0), d = glm::dvec3(x, 0.039, 0.0) - from;
+        const Ray ray{glm::vec3(from), glm::vec3(d / std::sqrt(glm::dot(d, d)))};
+        ASSERT_NO_FATAL_FAILURE(expect_same(grid, BruteForce(geometry), ray));
+        const Hit across = grid.closest_hit({glm::vec3(x, 5.0, 0.0), glm::vec3(0.0f, -1.0f, 0.0f)});
+        ASSERT_EQ(across.primitive, make_id(PrimitiveKind::sphere, static_cast<std::uint32_t>(i)));
+    }
+}
+
+// Cells and references stay within a small multiple of the primitives, whatever the scene.
+void expect_bounded(const Geometry& geometry, const char* what) {
+    const UniformGrid grid(std::make_shared<const Geometry>(geometry));
+    const std::size_t n = geometry.bounded_count();
+    EXPECT_GE(grid.reference_count(), n) << what;
+    EXPECT_LE(grid.reference_count(), 16 * n + 4096) << what;
+    EXPECT_LE(cells_of(grid), 64 * n + 64) << what;
+    EXPECT_LE(grid.memory_bytes(), 4 * (cells_of(grid) + 1 + grid.reference_count())) << what;
+}
+
+TEST(Grid, S_GRD_05_MemoryIsBoundedByTheNumberOfPrimitives) {
+    Geometry huge_and_tiny = triangles_in_cube(5, 100000, glm::vec3(0.0f), 1.0f, 1.0e-3f);
+    huge_and_tiny.spheres = {{glm::vec3(0.0f), 3.0f}};
+    expect_bounded(huge_and_tiny, "one huge primitive and 100,000 tiny ones");
+    expect_bounded(triangles_in_cube(6, 20000, glm::vec3(0.0f), 1.0f, 1.0f), "20,000 triangles that all fill the scene");
+    Geometry concentric;
+    for (int i = 1; i <= 100000; ++i) concentric.spheres.push_back({glm::vec3(1.0f), 1.0f + 1.0e-3f * static_cast<float>(i)});
+    expect_bounded(concentric, "100,000 spheres around each other");
+    Geometry wires = triangles_in_cube(7, 1, glm::vec3(0.0f), 0.0f, 1.0f);
+    Random random(7);
+    while (wires.triangles.size() < 20000) {
+        const glm::vec3 a = random.in_cube(-1.0f, 1.0f);
+        add_triangle(wires, a, -a, a + 1.0e-4f * random.direction());
+    }
+    expect_bounded(wires, "20,000 needles through the whole scene");
+    for (const AdversarialScene& scene : kAdversarialScenes) {
+        const Geometry g = scene.build();
+        if (g.bounded_count() > 0) expect_bounded(g, scene.name.data());
+    }
+}
+
+TEST(Grid, S_GRD_07_OriginInsideOutsideAndExactlyOnTheBounds) {
+    Geometry plane_of_boxes;
+    for (int i = 0; i < 100; ++i) {
+        const glm::vec3 p(i % 10, i / 10, 2.0f);
+        plane_of_boxes.boxes.push_back({p, p + glm::vec3(0.5f, 0.5f, 0.0f)});
+    }
+    for (const Geometry& g : {scenes::one_sphere(), scenes::one_triangle(), scenes::flat_floor(), plane_of_boxes}) {
+        const auto geometry = std::make_shared<const Geometry>(g);
+        const UniformGrid grid(geometry);
+        const BruteForce truth(geometry);
+        const Aabb box = geometry->bounds();
+        const glm::dvec3 grid_lo = grid.corner(glm::ivec3(0)), grid_hi = grid.corner(grid.resolution());
+        Random random(8);
+        for (int i = 0; i < 5000; ++i) {
+            const auto axis = static_cast<int>(random.below(3));
+            const float size = glm::length(box.size());
+            Ray ray{box.lo + random.in_cube(0.0f, 1.0f) * box.size(), random.direction()};
+            if (i % 5 == 1) ray.origin = box.center() + size * random.in_cube(-2.0f, 2.0f);
+            if (i % 5 == 2) ray.origin[axis] = random.below(2) == 0 ? box.lo[axis] : box.hi[axis];
+            if (i % 5 == 3) ray.origin[axis] = static_cast<float>(random.below(2) == 0 ? grid_lo[axis] : grid_hi[axis]);
+            if (i % 5 == 4) ray.origin = glm::vec3(random.below(2) == 0 ? grid_lo : grid_hi);
+            if (i % 3 == 0) ray.direction[axis] = 0.0f;
+            ASSERT_NO_FATAL_FAILURE(expect_same(grid, truth, ray));
+        }
+    }
+    const UniformGrid empty(std::make_shared<const Geometry>());
+    EXPECT_FALSE(empty.closest_hit({glm::vec3(0.0f), glm::vec3(1.0f)}).found());
+    EXPECT_FALSE(empty.occluded({glm::vec3(0.0f), glm::vec3(1.0f)}));
+}
+
+// Beyond the distance up to which cells are padded, near and far of that border, past the corners of the bounds.
+TEST(Grid, S_GRD_08_RaysFromBeyondThePaddingAnswerLikeBruteForce) {
+    for (const Geometry& g : {scenes::one_sphere(), scenes::one_triangle(), scenes::closed_ball()}) {
+        const auto geometry = std::make_shared<const Geometry>(g);
+        const UniformGrid grid(geometry);
+        const BruteForce truth(geometry);
+        const Aabb box = geometry->bounds();
+        Random random(9);
+        for (int i = 0; i < 3000; ++i) {
+            glm::vec3 target = box.center();
+            target[i % 3] = i % 2 == 0 ? box.lo[i % 3] : box.hi[i % 3];
+            glm::vec3 direction = random.direction();
+            direction[i % 3] = 0.0f;
+            const glm::vec3 origin =
+                target + box.magnitude() * (i % 4 == 0 ? 64.0f : random.power_of_ten(1.7f, 6.0f)) * direction;
+            ASSERT_NO_FATAL_FAILURE(expect_same(grid, truth, {origin, target - origin}));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace glint

@@ -1,0 +1,278 @@
+// Rays that start on a surface must not hit it again: a million per kind of primitive, near and far from the origin, on both
+// sides; and the gaps that an absolute offset would swallow.
+#include "core/surface_point.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/core/test_scene.h"
+
+namespace glint {
+namespace {
+
+using namespace test;
+
+// A unit primitive of each kind, moved to `at`; glass so that both sides are of interest.
+std::shared_ptr<const Scene> single(PrimitiveKind kind, glm::vec3 at) {
+    SceneBuilder b;
+    const std::uint32_t m = b.add_material(glass(1.5f));
+    switch (kind) {
+        case PrimitiveKind::triangle:
+            b.add_vertex(at + glm::vec3(-1, -0.5f, 0.2f));
+            b.add_vertex(at + glm::vec3(1, -0.7f, -0.3f));
+            b.add_vertex(at + glm::vec3(0.1f, 1, 0.4f));
+            b.add_triangle(0, 1, 2, m);
+            break;
+        case PrimitiveKind::sphere: b.add(Sphere{at, 1.0f}, m); break;
+        case PrimitiveKind::box: b.add(Box{at - glm::vec3(0.7f, 0.5f, 0.6f), at + glm::vec3(0.7f, 0.5f, 0.6f)}, m); break;
+        case PrimitiveKind::cone:
+            b.add(Cone{at - glm::vec3(0.2f, 0.8f, 0.1f), 0.9f, at + glm::vec3(0.2f, 0.8f, 0.1f), 0.3f}, m);
+            break;
+        case PrimitiveKind::plane: b.add(plane_at(glm::dvec3(at), {0.3, 1.0, -0.4}), m); break;
+    }
+    return b.finish();
+}
+
+// A direction in the hemisphere of n; grazing ones are as frequent as others.
+glm::vec3 hemisphere(Random& random, glm::dvec3 n) {
+    glm::dvec3 d = random.direction();
+    if (glm::dot(d, n) < 0.0) d -= 2.0 * glm::dot(d, n) * n;
+    return glm::vec3(d);
+}
+
+// How far a ray that starts exactly on the surface and goes inwards has to the surface's other side: the second root of the
+// quadric, 2 (-n.f') / d.A.d in general; infinite for flat primitives and where there is none.
+double chord(const Scene& scene, const SurfacePoint& s, const Hit& hit, glm::dvec3 d) {
+    const Geometry& g = *scene.geometry;
+    if (kind_of(hit.primitive) == PrimitiveKind::sphere) {
+        return -2.0 * glm::dot(glm::dvec3(s.p) - glm::dvec3(g.spheres[0].center), d) / glm::dot(d, d);
+    }
+    if (kind_of(hit.primitive) == PrimitiveKind::cone) {
+        const Cone& c = g.cones[0];
+        const glm::dvec3 base(c.base), axis = glm::dvec3(c.apex) - base, f = glm::dvec3(s.p) - base;
+        const double h2 = glm::dot(axis, axis), slope = static_cast<double>(c.apex_radius) - static_cast<double>(c.base_radius);
+        const double s0 = glm::dot(f, axis) / h2, s1 = glm::dot(d, axis) / h2;
+        const glm::dvec3 p0 = f - s0 * axis, p1 = d - s1 * axis;
+        const double r0 = static_cast<double>(c.base_radius) + slope * s0, r1 = slope * s1;
+        const double a = glm::dot(p1, p1) - r1 * r1, b = glm::dot(p0, p1) - r0 * r1;
+        return a > 0.0 ? -2.0 * b / a : static_cast<double>(kInfinity);
+    }
+    return static_cast<double>(kInfinity);
+}
+
+// A hit of the surface just left. Outwards no kind can be met again: all are convex. Inwards a box is met on another face,
+// ball and cone after their chord, the flat ones never.
+bool is_self_hit(const Scene& scene, const SurfacePoint& s, const Hit& from, const Ray& ray, const Hit& hit, bool inwards) {
+    if (!hit.found()) return false;
+    const PrimitiveKind kind = kind_of(from.primitive);
+    if (!inwards || kind == PrimitiveKind::triangle || kind == PrimitiveKind::plane) return true;
+    if (kind == PrimitiveKind::box) return hit.u == from.u;
+    return static_cast<double>(hit.t) < 0.5 * chord(scene, s, from, glm::dvec3(ray.direction));
+}
+
+struct Tally {
+    int rays = 0, self_hits = 0, through = 0;
+};
+
+// Points seen from ten units away, `fan` rays from each, every second one to the far side of the surface.
+Tally spawn(const Scene& scene, const AnyAccelerator& accelerator, glm::vec3 at, int points, int fan, std::uint32_t seed) {
+    Random random(seed);
+    Tally tally;
+    for (int i = 0; i < points; ++i) {
+        const glm::vec3 eye(glm::dvec3(at) + 10.0 * random.direction());
+        const glm::vec3 target(glm::dvec3(at) + 0.5 * random.uniform() * random.direction());
+        const Ray ray{eye, glm::vec3(glm::normalize(glm::dvec3(target) - glm::dvec3(eye))), kInfinity};
+        const Hit hit = closest_hit(accelerator, ray);
+        if (!hit.found()) continue;
+        const SurfacePoint s = surface_point(scene, ray, hit);
+        for (int k = 0; k < fan; ++k) {
+            const glm::vec3 side = k % 2 == 0 ? s.ng : -s.ng;
+            const bool inwards = (side == s.ng) != s.outside;
+            const Ray next{spawn_origin(s, side), hemisphere(random, glm::dvec3(side)), kInfinity};
+            const Hit again = closest_hit(accelerator, next);
+            ++tally.rays;
+            tally.through += again.found() ? 1 : 0;
+            tally.self_hits += is_self_hit(scene, s, hit, next, again, inwards) ? 1 : 0;
+        }
+    }
+    return tally;
+}
+
+void expect_no_self_hits(PrimitiveKind kind) {
+    for (const float distance : {0.0f, 1e3f, 1e5f}) {
+        const glm::vec3 at = distance * glm::vec3(1.0f, 0.7f, -0.4f);
+        const auto scene = single(kind, at);
+        int rays = 0;
+        for (const AcceleratorKind a : {AcceleratorKind::none, AcceleratorKind::bvh}) {
+            const Tally tally =
+                spawn(*scene, *build_accelerator(a, scene->geometry), at, 32000, 24, static_cast<std::uint32_t>(a) + 5);
+            rays += tally.rays;
+            EXPECT_EQ(tally.self_hits, 0) << distance << ' ' << kAcceleratorNames[static_cast<std::size_t>(a)];
+            // Every ray into a closed body must leave it again.
+            if (kind == PrimitiveKind::sphere || kind == PrimitiveKind::box) {
+                EXPECT_GE(tally.through, tally.rays / 2 - tally.rays / 100);
+            }
+        }
+        EXPECT_GE(rays, 1000000) << distance;
+    }
+}
+
+TEST(Spawn, S_OFF_01_ATriangleNeverHitsItself) { expect_no_self_hits(PrimitiveKind::triangle); }
+TEST(Spawn, S_OFF_01_ASphereNeverHitsItself) { expect_no_self_hits(PrimitiveKind::sphere); }
+TEST(Spawn, S_OFF_01_ABoxNeverHitsItself) { expect_no_self_hits(PrimitiveKind::box); }
+TEST(Spawn, S_OFF_01_AConeNeverHitsItself) { expect_no_self_hits(PrimitiveKind::cone); }
+TEST(Spawn, S_OFF_01_APlaneNeverHitsItself) { expect_no_self_hits(PrimitiveKind::plane); }
+
+// Ten to the power of a uniform number, with a random sign.
+float wild(Random& random, double low, double high) {
+    const double x = std::pow(10.0, random.uniform(low, high));
+    return static_cast<float>(random.uniform() < 0.5 ? -x : x);
+}
+
+TEST(Spawn, S_OFF_02_WildTrianglesNeverHitThemselves) {
+    Random random(2);
+    int rays = 0, self_hits = 0;
+    for (int i = 0; i < 1000; ++i) {
+        SceneBuilder b;
+        glm::dvec3 corner[3];
+        for (glm::dvec3& c : corner) {
+            const glm::vec3 v(wild(random, -8, 8), wild(random, -8, 8), wild(random, -8, 8));
+            c = glm::dvec3(v);
+            b.add_vertex(v);
+        }
+        if (!b.add_triangle(0, 1, 2, b.add_material(black()))) continue;
+        const auto scene = b.finish();
+        const AnyAccelerator accelerator = BruteForce(scene->geometry);
+        // A point of the triangle, as a hit of a ray along the normal would report it.
+        Hit hit;
+        hit.primitive = make_id(PrimitiveKind::triangle, 0);
+        hit.u = static_cast<float>(random.uniform(0, 0.5)), hit.v = static_cast<float>(random.uniform(0, 0.5));
+        const glm::dvec3 n = glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
+        const SurfacePoint s = surface_point(*scene, Ray{glm::vec3(0.0f), glm::vec3(-n), kInfinity}, hit);
+        for (int k = 0; k < 1000; ++k, ++rays) {
+            const glm::vec3 side = k % 2 == 0 ? s.ng : -s.ng;
+            self_hits +=
+                closest_hit(accelerator, Ray{spawn_origin(s, side), hemisphere(random, glm::dvec3(side)), kInfinity}).found() ? 1
+                                                                                                                              : 0;
+        }
+    }
+    EXPECT_GT(rays, 900000);
+    EXPECT_EQ(self_hits, 0);
+}
+
+// Points near the origin of triangles a thousand units wide: their coordinates are small, the numbers in the test are not.
+TEST(Spawn, S_TRI_16_AWideTriangleNeverHitsItselfNearTheOrigin) {
+    Random random(16);
+    int rays = 0, self_hits = 0;
+    for (int i = 0; i < 500; ++i) {
+        const glm::dvec3 a = random.direction(), b = glm::normalize(glm::cross(a, random.direction()));
+        SceneBuilder builder;
+        for (int k = 0; k < 3; ++k) {
+            const double angle = 2.0 * kPi * (k + random.uniform(0.0, 0.5)) / 3.0;
+            // The first hundred lie flat, a hair above the plane of the axes.
+            if (i < 100)
+                builder.add_vertex(glm::vec3(1e3 * std::cos(angle), 1e-6, 1e3 * std::sin(angle)));
+            else
+                builder.add_vertex(glm::vec3(1e3 * (std::cos(angle) * a + std::sin(angle) * b)));
+        }
+        builder.add_triangle(0, 1, 2, builder.add_material(black()));
+        const auto scene = builder.finish();
+        const AnyAccelerator accelerator = BruteForce(scene->geometry);
+        for (int p = 0; p < 20; ++p) {
+            const glm::dvec3 eye = random.direction();
+            const Ray ray{glm::vec3(eye), glm::vec3(glm::normalize(1e-3 * random.direction() - eye)), kInfinity};
+            const Hit hit = closest_hit(accelerator, ray);
+            if (!hit.found()) continue;
+            const SurfacePoint s = surface_point(*scene, ray, hit);
+            for (int k = 0; k < 50; ++k, ++rays) {
+                const glm::vec3 side = k % 2 == 0 ? s.ng : -s.ng;
+                const Ray next{spawn_origin(s, side), hemisphere(random, glm::dvec3(side)), kInfinity};
+                self_hits += closest_hit(accelerator, next).found() ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(rays, 300000);
+    EXPECT_EQ(self_hits, 0);
+}
+
+TEST(Spawn, S_SPH_07_WildSpheresNeverHitThemselves) {
+    Random random(7);
+    int points = 0, self_hits = 0;
+    for (int i = 0; i < 1000; ++i) {
+        SceneBuilder b;
+        const glm::vec3 center(wild(random, -8, 8), wild(random, -8, 8), wild(random, -8, 8));
+        const float radius = std::abs(wild(random, -4, 4));
+        b.add(Sphere{center, radius}, b.add_material(black()));
+        const auto scene = b.finish();
+        const AnyAccelerator accelerator = BruteForce(scene->geometry);
+        // Seen from a few radii away, but never from where the coordinates' rounding exceeds the ball.
+        for (int p = 0; p < 10; ++p) {
+            const glm::vec3 eye(glm::dvec3(center) +
+                                random.uniform(1.5, 20.0) * static_cast<double>(radius) * random.direction());
+            const glm::dvec3 d = glm::dvec3(center) - glm::dvec3(eye);
+            if (!(glm::length(d) > 1.2 * static_cast<double>(radius))) continue;
+            const Ray ray{eye, glm::vec3(glm::normalize(d)), kInfinity};
+            const Hit hit = closest_hit(accelerator, ray);
+            if (!hit.found()) continue;
+            ++points;
+            const SurfacePoint s = surface_point(*scene, ray, hit);
+            for (int k = 0; k < 100; ++k) {
+                self_hits +=
+                    closest_hit(accelerator, Ray{spawn_origin(s, s.ng), hemisphere(random, glm::dvec3(s.ng)), kInfinity}).found()
+                        ? 1
+                        : 0;
+            }
+        }
+    }
+    EXPECT_GT(points, 5000);
+    EXPECT_EQ(self_hits, 0);
+}
+
+// The share of light that reaches a glowing ball of radius 1 through a clear shell of radius 1 + gap around it.
+double seen_through_shell(float gap, float ior) {
+    SceneBuilder b;
+    b.add(Sphere{glm::vec3(0.0f), 1.0f}, b.add_material(emitter({1, 0, 0})));
+    b.add(Sphere{glm::vec3(0.0f), 1.0f + gap}, b.add_material(glass(ior)));
+    RenderSettings settings = centred();
+    settings.features.set(Feature::reflections, false);
+    Probe probe(b.finish(), settings);
+    Random random(3);
+    double least = 1.0;
+    for (int i = 0; i < 20000; ++i) {
+        const glm::dvec3 eye = 5.0 * random.direction();
+        const glm::dvec3 target = 0.9 * random.uniform() * random.direction();
+        least = std::min(least, probe.radiance(glm::vec3(eye), glm::vec3(target - eye)).x);
+    }
+    return least;
+}
+
+TEST(Spawn, S_OFF_07_ABallCloseBehindAShellIsFound) {
+    EXPECT_EQ(seen_through_shell(4e-5f, 1.0f), 1.0);
+    EXPECT_EQ(seen_through_shell(4e-6f, 1.0f), 1.0);
+    EXPECT_GT(seen_through_shell(4e-5f, 1.5f), 0.5);
+}
+
+TEST(Spawn, S_OFF_07_ASmallSphereDoesNotShadowItself) {
+    struct Ball {
+        glm::vec3 center;
+        float radius;
+    };
+    for (const Ball& ball : {Ball{{0, .083f, .4f}, .015f}, {{278, 273, -5400}, 250}}) {
+        SceneBuilder b;
+        b.add(Sphere{ball.center, ball.radius}, b.add_material(matte(1.0f)));
+        Light light;
+        light.position = ball.center + glm::vec3(0, 0, 40 * ball.radius);
+        b.scene().lights.push_back(light);
+        CameraPose camera = camera_at(ball.center + glm::vec3(0, 0, 20 * ball.radius), ball.center, 6.0f);
+        camera.lens_radius = 0.05f * ball.radius;
+        RenderSettings settings;
+        settings.features = without(FeatureSet::all(), {Feature::soft});
+        const auto scene = b.finish();
+        const Image shadowed = render(scene, camera, settings, {64, 64, 16}).image;
+        settings.features.set(Feature::shadows, false);
+        EXPECT_TRUE(same_bits(shadowed, render(scene, camera, settings, {64, 64, 16}).image));
+        EXPECT_GT(mean_of(shadowed), 0.3);
+    }
+}
+
+}  // namespace
+}  // namespace glint
