@@ -215,30 +215,39 @@ inline float intersect_plane(const PreparedRay& ray, const Plane& plane, float t
     return reportable(t, t_limit) ? t : 0.0f;
 }
 
-// Tests primitive `id` and keeps the nearer hit in `best`; at equal t the lower id stays.
+// Tests primitive i of a kind and keeps the nearer hit in `best`; at equal t the lower id stays.
+template <PrimitiveKind kind>
+inline void intersect(const PreparedRay& ray, const Geometry& g, std::uint32_t i, Hit& best) noexcept {
+    Hit hit;
+    hit.primitive = make_id(kind, i);
+    if constexpr (kind == PrimitiveKind::triangle) {
+        const auto& index = g.triangles[i];
+        TriangleHit h{};
+        if (!intersect_triangle(ray, g.vertices[index[0]], g.vertices[index[1]], g.vertices[index[2]], best.t, h)) return;
+        hit.t = h.t; hit.u = h.u; hit.v = h.v;
+    } else if constexpr (kind == PrimitiveKind::sphere) {
+        hit.t = intersect_sphere(ray, g.spheres[i], best.t);
+    } else if constexpr (kind == PrimitiveKind::box) {
+        int face = 0;
+        hit.t = intersect_box(ray, g.boxes[i], best.t, face);
+        hit.u = static_cast<float>(face);
+    } else if constexpr (kind == PrimitiveKind::cone) {
+        hit.t = intersect_cone(ray, g.cones[i], best.t);
+    } else {
+        hit.t = intersect_plane(ray, g.planes[i], best.t);
+    }
+    if (hit.t > 0.0f && (hit.t < best.t || hit.primitive < best.primitive)) best = hit;
+}
+
 inline void intersect(const PreparedRay& ray, const Geometry& g, PrimitiveId id, Hit& best) noexcept {
     const std::uint32_t i = index_of(id);
-    Hit hit;
-    hit.primitive = id;
     switch (kind_of(id)) {
-        case PrimitiveKind::triangle: {
-            const auto& index = g.triangles[i];
-            TriangleHit h{};
-            if (!intersect_triangle(ray, g.vertices[index[0]], g.vertices[index[1]], g.vertices[index[2]], best.t, h)) return;
-            hit.t = h.t; hit.u = h.u; hit.v = h.v;
-            break;
-        }
-        case PrimitiveKind::sphere: hit.t = intersect_sphere(ray, g.spheres[i], best.t); break;
-        case PrimitiveKind::box: {
-            int face = 0;
-            hit.t = intersect_box(ray, g.boxes[i], best.t, face);
-            hit.u = static_cast<float>(face);
-            break;
-        }
-        case PrimitiveKind::cone: hit.t = intersect_cone(ray, g.cones[i], best.t); break;
-        case PrimitiveKind::plane: hit.t = intersect_plane(ray, g.planes[i], best.t); break;
+        case PrimitiveKind::triangle: return intersect<PrimitiveKind::triangle>(ray, g, i, best);
+        case PrimitiveKind::sphere: return intersect<PrimitiveKind::sphere>(ray, g, i, best);
+        case PrimitiveKind::box: return intersect<PrimitiveKind::box>(ray, g, i, best);
+        case PrimitiveKind::cone: return intersect<PrimitiveKind::cone>(ray, g, i, best);
+        case PrimitiveKind::plane: return intersect<PrimitiveKind::plane>(ray, g, i, best);
     }
-    if (hit.t > 0.0f && (hit.t < best.t || id < best.primitive)) best = hit;
 }
 
 // Starts a query: the ray's t_max as the distance to beat, and the infinite planes tested.
@@ -246,7 +255,7 @@ inline Hit begin_query(const PreparedRay& ray, const Geometry& g) noexcept {
     Hit best;
     best.t = ray.t_max;
     if (!ray.usable) return best;
-    for (std::uint32_t i = 0; i < g.planes.size(); ++i) intersect(ray, g, make_id(PrimitiveKind::plane, i), best);
+    for (std::uint32_t i = 0; i < g.planes.size(); ++i) intersect<PrimitiveKind::plane>(ray, g, i, best);
     return best;
 }
 

@@ -42,7 +42,7 @@ int quota_threads(int cores) {
 std::shared_ptr<const Scene> with_sky(const Scene& scene) {
     auto copy = std::make_shared<Scene>(scene);
     copy->environment.kind = Environment::Kind::sky;
-    copy->environment.up = glm::normalize(scene.cameras.front().up);
+    copy->environment.up = scene.world_up();
     copy->environment.sun_direction = copy->environment.up;
     if (!scene.lights.empty()) {
         const Light& l = scene.lights.front();

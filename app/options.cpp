@@ -2,13 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iostream>
 
 #include <fmt/format.h>
 
 #include "app/keys.h"
+#include "app/option_values.h"
 
 namespace glint {
 namespace {
@@ -22,52 +22,10 @@ constexpr std::string_view kUsage =
     "glint: a progressive CPU ray tracer you fly through, and a headless renderer with the same bits.\n\n"
     "  glint [view] [SCENE] [OPTION...]        open the viewer (no SCENE: the showpiece)\n"
     "  glint render SCENE -o OUT [OPTION...]   render to a .png or .pfm file, without any window\n"
-    "  glint compare A B [--threshold X]       RMSE and largest difference of two pictures\n"
+    "  glint compare A B [--reference-threshold X]       RMSE and largest difference of two pictures\n"
     "  glint info SCENE                        what a scene holds and which accelerator it gets\n"
     "  glint list                              built-in scenes, accelerators, samplers, features\n\n"
     "SCENE is a .p3f, .nff, .gltf or .glb file, or builtin:NAME[,key=value...].\n";
-
-[[noreturn]] void refuse(std::string_view option, std::string_view value, std::string_view wanted) {
-    throw UsageError(fmt::format("{}: '{}' is not {}", option, value, wanted));
-}
-
-template <class T>
-T number(std::string_view option, std::string_view text, T least, T most, std::string_view wanted) {
-    T value{};
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    // Written so that a NaN is refused.
-    if (error != std::errc() || stop != end || !(value >= least && value <= most)) refuse(option, text, wanted);
-    return value;
-}
-
-std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
-    std::vector<std::string_view> parts;
-    for (std::size_t begin = 0;;) {
-        const std::size_t end = text.find_first_of(separators, begin);
-        parts.push_back(text.substr(begin, end == std::string_view::npos ? end : end - begin));
-        if (end == std::string_view::npos) return parts;
-        begin = end + 1;
-    }
-}
-
-glm::vec3 vector3(std::string_view option, std::string_view text) {
-    const auto parts = split(text, ",");
-    if (parts.size() != 3) refuse(option, text, "three numbers X,Y,Z");
-    glm::vec3 v;
-    for (int i = 0; i < 3; ++i) v[i] = number(option, parts[static_cast<std::size_t>(i)], -1e18f, 1e18f, "three numbers X,Y,Z");
-    return v;
-}
-
-template <std::size_t N>
-std::size_t choice(std::string_view option, std::string_view text, const std::array<std::string_view, N>& names) {
-    const auto found = std::find(names.begin(), names.end(), text);
-    if (found == names.end()) {
-        throw UsageError(fmt::format("{}: unknown value '{}'{}", option, text,
-                                     did_you_mean(text, std::vector<std::string>(names.begin(), names.end()))));
-    }
-    return static_cast<std::size_t>(found - names.begin());
-}
 
 // One CLI::App that fills `o`; each value is checked where it is declared.
 class Parser {
@@ -80,10 +38,10 @@ public:
     void render_options() {
         text("--resolution", "WxH", "image size; default the scene's", [this](std::string_view n, std::string_view v) {
             const auto parts = split(v, "x,");
-            if (parts.size() != 2) refuse(n, v, "a size WxH");
+            if (parts.size() != 2) refuse_value(n, v, "a size WxH");
             o_.width = number(n, parts[0], 1, kMaxSide, "a size from 1x1 to 65535x65535");
             o_.height = number(n, parts[1], 1, kMaxSide, "a size from 1x1 to 65535x65535");
-            if (std::int64_t{o_.width} * o_.height > kMaxPixels) refuse(n, v, "a size of at most 2^28 pixels");
+            if (std::int64_t{o_.width} * o_.height > kMaxPixels) refuse_value(n, v, "a size of at most 2^28 pixels");
         });
         text("--spp", "N", "samples a pixel; default the scene's, else 64 (viewer: 4096)",
              [this](auto n, auto v) { o_.spp = number(n, v, 1, kMaxSamples, "a number of samples (1 or more)"); });
@@ -120,7 +78,7 @@ public:
         text("--camera-focal-point", "X,Y,Z", "what it looks at", [this](auto n, auto v) { o_.camera_focal_point = vector3(n, v); });
         text("--camera-view-up", "X,Y,Z", "up in the picture", [this](auto n, auto v) {
             o_.camera_view_up = vector3(n, v);
-            if (*o_.camera_view_up == glm::vec3(0.0f)) refuse(n, v, "a direction");
+            if (*o_.camera_view_up == glm::vec3(0.0f)) refuse_value(n, v, "a direction");
         });
         text("--camera-view-angle", "DEG", "vertical field of view", [this](auto n, auto v) {
             o_.view_angle = number(n, v, 0.001f, 179.0f, "an angle from 0.001 to 179 degrees");
@@ -150,7 +108,7 @@ public:
         });
         text("--crop", "x0,x1,y0,y1", "a window, counted from the top left, x1 and y1 excluded", [this](auto n, auto v) {
             const auto parts = split(v, ",");
-            if (parts.size() != 4) refuse(n, v, "four numbers x0,x1,y0,y1");
+            if (parts.size() != 4) refuse_value(n, v, "four numbers x0,x1,y0,y1");
             o_.crop.emplace();
             for (std::size_t i = 0; i < 4; ++i) (*o_.crop)[i] = number(n, parts[i], 0, kMaxSide, "four numbers x0,x1,y0,y1");
         });
@@ -162,7 +120,7 @@ public:
     }
 
     void compare_options() {
-        text("--threshold", "X", "largest RMSE that counts as equal; default 0",
+        text("--reference-threshold", "X", "largest RMSE that counts as equal; default 0",
              [this](auto n, auto v) { o_.threshold = number(n, v, 0.0, 1e18, "a number of at least 0"); });
     }
 
@@ -227,27 +185,6 @@ private:
 };
 
 }  // namespace
-
-std::string did_you_mean(std::string_view typed, const std::vector<std::string>& known) {
-    std::size_t best = std::max<std::size_t>(2, typed.size() / 3) + 1;
-    std::string name;
-    for (const std::string& k : known) {
-        // Edit distance by Wagner & Fischer (1974), one row at a time.
-        std::vector<std::size_t> row(k.size() + 1);
-        for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-        for (std::size_t i = 0; i < typed.size(); ++i) {
-            std::size_t diagonal = row[0];
-            row[0] = i + 1;
-            for (std::size_t j = 0; j < k.size(); ++j) {
-                const std::size_t replace = diagonal + (typed[i] == k[j] ? 0 : 1);
-                diagonal = row[j + 1];
-                row[j + 1] = std::min({replace, row[j] + 1, row[j + 1] + 1});
-            }
-        }
-        if (row.back() < best) best = row.back(), name = k;
-    }
-    return name.empty() ? "" : fmt::format("; did you mean '{}'?", name);
-}
 
 FeatureSet edit_features(std::string_view list, FeatureSet start, bool& whitted) {
     FeatureSet set = start;

@@ -6,21 +6,16 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "accel/accelerator.h"
+#include "app/option_values.h"
 #include "core/scene_io.h"
 #include "core/settings.h"
 
 namespace glint {
-
-class UsageError : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
-};
 
 enum class Command { view, render, compare, info, list };
 
@@ -73,9 +68,6 @@ struct Job {
 
 // The threads the process may use: its affinity mask, limited by a cgroup's quota.
 [[nodiscard]] int available_threads();
-
-// The word of `known` closest to `typed`, as "; did you mean 'x'?", or nothing when none is near.
-[[nodiscard]] std::string did_you_mean(std::string_view typed, const std::vector<std::string>& known);
 
 // The scene that a bare `glint` shows, found beside the binary, in the source tree or where it is installed.
 [[nodiscard]] std::string default_scene();

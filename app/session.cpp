@@ -36,7 +36,7 @@ constexpr int kMaxSide = 8192;          // every OpenGL 3.3 driver in use has te
 Session::Session(std::shared_ptr<const Scene> scene, const Choices& choices, const CameraPose& camera, AcceleratorSource source)
     : scene_(std::move(scene)),
       choices_(choices),
-      camera_(camera, nearest_axis(scene_->cameras.at(0).up)),
+      camera_(camera, nearest_axis(scene_->world_up())),
       source_(std::move(source)),
       first_exposure_(choices.display.exposure_ev) {}
 

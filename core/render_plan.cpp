@@ -114,7 +114,7 @@ RenderPlan plan_render(const Scene& scene, const RenderSettings& settings, const
             light = without_area(light);
         } else if (add_spread && light.shape == Light::Shape::point) {
             const float half = settings.light_size.value_or(home.target_distance() / 60.0f);
-            if (half > 0.0f) spread_over_square(light, home.up, half);
+            if (half > 0.0f) spread_over_square(light, scene.world_up(), half);
             else light = without_area(light);
         }
     }

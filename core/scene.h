@@ -30,12 +30,15 @@ struct Scene {
     std::vector<Light> lights;
     Environment environment;
     std::vector<CameraPose> cameras;  // at least one
+    std::optional<glm::vec3> up;      // where the format fixes it (glTF: +y); else see world_up()
     int width = 1280, height = 720;   // what the file asks for
     int spp = 0;                      // 0 = the file says nothing
     std::string accelerator;          // "none", "grid", "bvh" or empty
     Transfer transfer = Transfer::srgb;
     std::vector<std::string> warnings;  // one line each: path:line: what was skipped
 
+    // The scene's up, unit length: as the format says, or that of its first camera.
+    [[nodiscard]] glm::vec3 world_up() const { return glm::normalize(up.value_or(cameras.front().up)); }
     [[nodiscard]] const Material& material(PrimitiveId id) const {
         return materials[material_of[static_cast<std::size_t>(kind_of(id))][index_of(id)]];
     }

@@ -184,6 +184,7 @@ std::shared_ptr<const Scene> reader::read_gltf(const std::filesystem::path& path
     Scene& scene = builder.scene();
     scene.name = path.filename().string();
     scene.transfer = Transfer::srgb;
+    scene.up = glm::vec3(0.0f, 1.0f, 0.0f);
     GltfMeshReader meshes(model, builder, report);
     std::vector<PlacedCamera> cameras;
     const std::vector<int> roots = root_nodes(model, report);

@@ -191,6 +191,9 @@ TEST(Triangle, S_TRI_12_AHitLiesInTheTrianglesBounds) {
         ++found;
         Aabb box;
         for (const glm::vec3 p : {needle.a, needle.b, needle.c}) box.grow(p);
+        const Interval inside = slab_interval(PreparedRay(ray, box.magnitude()), box);
+        ASSERT_GE(hit.t, inside.near) << text(ray);
+        ASSERT_LE(hit.t, inside.far) << text(ray);
         const glm::dvec3 p = glm::dvec3(ray.origin) + static_cast<double>(hit.t) * glm::dvec3(ray.direction);
         const glm::vec3 from = glm::abs(ray.origin);
         const double padding = 32.0 * 0x1p-24 * static_cast<double>(std::max(from.x, std::max(from.y, from.z)) + box.magnitude());
