@@ -1,5 +1,6 @@
 #include "accel/uniform_grid.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace glint {
@@ -14,25 +15,81 @@ constexpr double kCellsPerPrimitive = 8.0;
 constexpr std::size_t kMaxReferencesPerPrimitive = 16;
 constexpr double kMaxCells = 1.0e8;
 constexpr int kMaxCellsPerAxis = 1 << 14;
+// As many of the largest primitives may stay outside the grid and be tested for every ray.
+constexpr std::size_t kMaxLarge = 16;
+// Primitive tests a ray costs in a grid that fits its contents.
+constexpr double kTestsInFittingGrid = 10.0;
+
+struct Bounded {
+    Aabb bounds;
+    PrimitiveId id;
+};
+
+double diagonal2(const Aabb& box) {
+    const glm::dvec3 d = glm::dvec3(box.hi) - glm::dvec3(box.lo);
+    return glm::dot(d, d);
+}
+
+// The sides with none below a thousandth of the widest, so that flat contents have a volume.
+glm::dvec3 solid(glm::dvec3 size) { return glm::max(size, glm::dvec3(std::max(size.x, std::max(size.y, size.z)) * 0x1p-10)); }
+
+// How many of the first primitives (the largest, in descending order) to keep out. A floor under a small model would
+// stretch the cells until the model fills a few of them: tests per ray grow with the volume per cell to the power 2/3.
+std::size_t count_large(const std::vector<Bounded>& primitives) {
+    const std::size_t most = std::min(kMaxLarge, primitives.size() / 2);
+    Aabb rest;
+    for (std::size_t i = most; i < primitives.size(); ++i) rest.grow(primitives[i].bounds);
+    const auto volume = [](const Aabb& box) {
+        const glm::dvec3 s = solid(glm::dvec3(box.hi) - glm::dvec3(box.lo));
+        return s.x * s.y * s.z;
+    };
+    const double least = volume(rest);
+    std::size_t best = 0;
+    double best_cost = static_cast<double>(kInfinity);
+    for (std::size_t k = most + 1; k-- > 0;) {
+        if (k < most) rest.grow(primitives[k].bounds);
+        const double stretch = least > 0.0 ? volume(rest) / least : 1.0;
+        const double cost = static_cast<double>(k) + kTestsInFittingGrid * std::cbrt(stretch * stretch);
+        if (cost <= best_cost) best_cost = cost, best = k;
+    }
+    return best;
+}
 
 }  // namespace
 
 UniformGrid::UniformGrid(std::shared_ptr<const Geometry> geometry)
     : geometry_(std::move(geometry)), brute_force_(geometry_) {
-    const std::vector<PrimitiveId> ids = geometry_->bounded_ids();
-    if (ids.empty()) return;
+    std::vector<Bounded> primitives;
+    primitives.reserve(geometry_->bounded_count());
     Aabb all;
-    std::vector<Aabb> bounds;
-    bounds.reserve(ids.size());
-    for (const PrimitiveId id : ids) {
-        bounds.push_back(geometry_->bounds(id));
-        all.grow(bounds.back());
+    for (const PrimitiveId id : geometry_->bounded_ids()) {
+        primitives.push_back({geometry_->bounds(id), id});
+        all.grow(primitives.back().bounds);
     }
+    if (primitives.empty()) return;
     magnitude_ = all.magnitude();
+    const auto front = primitives.begin() + static_cast<std::ptrdiff_t>(std::min(kMaxLarge, primitives.size()));
+    std::partial_sort(primitives.begin(), front, primitives.end(), [](const Bounded& a, const Bounded& b) {
+        const double da = diagonal2(a.bounds), db = diagonal2(b.bounds);
+        return da != db ? da > db : a.id < b.id;
+    });
+    const std::size_t large = count_large(primitives);
+    Aabb inside;
+    std::vector<PrimitiveId> ids;
+    std::vector<Aabb> bounds;
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        if (i < large) {
+            large_.push_back(primitives[i].id);
+            continue;
+        }
+        ids.push_back(primitives[i].id);
+        bounds.push_back(primitives[i].bounds);
+        inside.grow(bounds.back());
+    }
     const double padding = kCellPadding * magnitude_;
-    lo_ = glm::dvec3(all.lo) - padding;
-    hi_ = glm::dvec3(all.hi) + padding;
-    // A few huge primitives among many small ones would be listed in nearly every cell: coarsen until they fit.
+    lo_ = glm::dvec3(inside.lo) - padding;
+    hi_ = glm::dvec3(inside.hi) + padding;
+    // Long primitives among many small ones would be listed in nearly every cell: coarsen until they fit.
     double density = kCellsPerPrimitive;
     choose_resolution(ids.size(), density);
     while (count_references(bounds) > kMaxReferencesPerPrimitive * ids.size() + 4096 && resolution_ != glm::ivec3(1)) {
@@ -44,11 +101,9 @@ UniformGrid::UniformGrid(std::shared_ptr<const Geometry> geometry)
 
 void UniformGrid::choose_resolution(std::size_t primitives, double cells_per_primitive) {
     const glm::dvec3 size = hi_ - lo_;
-    const double widest = std::max(size.x, std::max(size.y, size.z));
-    // A flat scene gets one layer of cells: its volume is taken as if each side had at least a thousandth of the widest.
-    const glm::dvec3 solid = glm::max(size, glm::dvec3(widest * 0x1p-10));
+    const glm::dvec3 sides = solid(size);
     const double cells = std::min(cells_per_primitive * static_cast<double>(primitives), kMaxCells);
-    const double per_length = std::cbrt(cells / (solid.x * solid.y * solid.z));
+    const double per_length = std::cbrt(cells / (sides.x * sides.y * sides.z));
     for (int i = 0; i < 3; ++i) {
         resolution_[i] = static_cast<int>(std::clamp(std::ceil(size[i] * per_length), 1.0, static_cast<double>(kMaxCellsPerAxis)));
         cell_[i] = size[i] / resolution_[i];
@@ -102,7 +157,9 @@ template <bool any>
 Hit UniformGrid::traverse(const Ray& ray) const noexcept {
     const PreparedRay prepared(ray, magnitude_);
     Hit best = begin_query(prepared, *geometry_);
-    if (!prepared.usable || ids_.empty() || (any && best.found())) return best;
+    if (!prepared.usable || ids_.empty()) return best;
+    for (const PrimitiveId id : large_) intersect(prepared, *geometry_, id, best);
+    if (any && best.found()) return best;
 
     // Before clipping: seen from there, what brute force hits may lie outside the padded grid by more than its padding.
     const glm::dvec3 o(ray.origin), d(ray.direction);

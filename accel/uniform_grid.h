@@ -1,5 +1,6 @@
 // Uniform grid walked by a 3-D DDA (Amanatides & Woo 1987), cells as one array of ids with offsets.
-// Invariant: a primitive is listed in every cell that its bounds touch when grown by the rounding error of any ray that
+// A few primitives much larger than the rest stay outside and are tested for every ray.
+// Invariant: a primitive inside is listed in every cell that its bounds touch when grown by the rounding error of any ray that
 // starts within kFarOrigin times the geometry's size; rays from farther away are answered by brute force.
 #pragma once
 
@@ -41,6 +42,7 @@ private:
     glm::ivec3 resolution_{0};
     std::vector<std::uint32_t> offsets_;  // of each cell's ids, x fastest; one more at the end
     std::vector<PrimitiveId> ids_;
+    std::vector<PrimitiveId> large_;      // kept out of the cells, tested for every ray
 };
 
 }  // namespace glint

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <thread>
 
@@ -27,22 +28,28 @@ extern "C" void request_stop(int signal) {
     stop_requested = true;
 }
 
-// {scene} {accel} {spp} in a file name.
+void replace_all(std::string& text, const std::string& field, const std::string& value) {
+    for (std::size_t at = text.find(field); at != std::string::npos; at = text.find(field, at + value.size())) {
+        text.replace(at, field.size(), value);
+    }
+}
+
+// {scene} {accel} {spp} in a file name, and {n}: the first number from 1 whose file does not exist yet.
 std::string filled_in(std::string name, const Job& job) {
     std::string scene = job.scene->name.substr(job.scene->name.find_last_of('/') + 1);
     for (char& c : scene) {
         if (c == ':' || c == ',' || c == '=') c = '_';
     }
-    const std::pair<std::string, std::string> fields[] = {
-        {"{scene}", scene},
-        {"{accel}", std::string(kAcceleratorNames[static_cast<std::size_t>(job.accelerator)])},
-        {"{spp}", std::to_string(job.spp)}};
-    for (const auto& [field, value] : fields) {
-        for (std::size_t at = name.find(field); at != std::string::npos; at = name.find(field, at + value.size())) {
-            name.replace(at, field.size(), value);
-        }
+    replace_all(name, "{scene}", scene);
+    replace_all(name, "{accel}", std::string(kAcceleratorNames[static_cast<std::size_t>(job.accelerator)]));
+    replace_all(name, "{spp}", std::to_string(job.spp));
+    if (name.find("{n}") == std::string::npos) return name;
+    for (int n = 1;; ++n) {
+        std::string numbered = name;
+        replace_all(numbered, "{n}", std::to_string(n));
+        std::error_code ignored;
+        if (!std::filesystem::exists(numbered, ignored)) return numbered;
     }
-    return name;
 }
 
 enum class Format { png, pfm };

@@ -101,7 +101,7 @@ public:
     }
 
     void output_options() {
-        text("-o,--output", "FILE", "a .png or .pfm file, - for PNG on stdout; {scene} {accel} {spp} are filled in",
+        text("-o,--output", "FILE", "a .png or .pfm file, - for PNG on stdout; {scene} {accel} {spp} {n} are filled in",
              [this](auto, auto v) { o_.output = v; });
         text("--time", "S", "seconds to render at most", [this](auto n, auto v) {
             o_.time = number(n, v, 0.0, 1e9, "a number of seconds");

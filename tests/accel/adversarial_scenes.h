@@ -155,6 +155,8 @@ inline Geometry mixture(std::uint64_t seed, int count, float scale) {
 }
 inline Geometry mixed() { return mixture(5, 500, 1.0f); }
 inline Geometry tiny() { return mixture(6, 400, 1.0e-6f); }
+// So small that long directions make t subnormal.
+inline Geometry speck() { return mixture(10, 50, 1.0e-12f); }
 inline Geometry astronomic() { return mixture(7, 300, 5.0e17f); }
 
 inline Geometry needles() {
@@ -209,6 +211,7 @@ inline constexpr AdversarialScene kAdversarialScenes[] = {
     {"far_from_origin", scenes::far_from_origin, 6000},
     {"mixed", scenes::mixed, 6000},
     {"tiny", scenes::tiny, 6000},
+    {"speck", scenes::speck, 40000},
     {"astronomic", scenes::astronomic, 6000},
     {"needles", scenes::needles, 6000},
     {"one_triangle", scenes::one_triangle, 8000},

@@ -205,6 +205,10 @@ TEST_F(CommandLine, ASceneWithoutEnvironmentCanHaveTheProceduralSky) {
 TEST_F(CommandLine, NamesAreFilledIn) {
     ASSERT_EQ(glint(quick + "--accel grid -o '" + path("{scene}-{accel}-{spp}.png") + "'").code, 0);
     EXPECT_TRUE(fs::exists(folder / "builtin_balls_level_1-grid-2.png"));
+    for (int n = 1; n <= 2; ++n) {
+        ASSERT_EQ(glint(quick + "-o '" + path("shot{n}.png") + "'").code, 0);
+        EXPECT_TRUE(fs::exists(folder / fmt::format("shot{}.png", n)));
+    }
 }
 
 TEST_F(CommandLine, TimeEndsARenderAndIsNamed) {

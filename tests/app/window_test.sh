@@ -10,6 +10,11 @@ if [ -z "${WINDOW_TEST_SCREEN:-}" ]; then
   line=$(env -u DISPLAY -u WAYLAND_DISPLAY "$glint" view builtin:dof 2>&1) || code=$?
   [ "$code" = 6 ] || { echo "FAILED: exit code $code without a display" >&2; exit 1; }
   [[ $line == *"glint render"* && $line != *$'\n'* ]] || { echo "FAILED: without a display: $line" >&2; exit 1; }
+  # A display without OpenGL: the same.
+  code=0
+  line=$(xvfb-run -a -s "-screen 0 640x480x24 -extension GLX" "$glint" view builtin:dof 2>&1) || code=$?
+  [ "$code" = 6 ] || { echo "FAILED: exit code $code without OpenGL" >&2; exit 1; }
+  [[ $line == *"glint render"* && $line != *$'\n'* ]] || { echo "FAILED: without OpenGL: $line" >&2; exit 1; }
   WINDOW_TEST_SCREEN=1 exec xvfb-run -a -s "-screen 0 1280x800x24" "$0" "$glint"
 fi
 
