@@ -19,8 +19,10 @@ namespace glint {
 
 template <class T>
 concept Accelerator = requires(const T& a, const Ray& ray) {
-    { a.closest_hit(ray) } noexcept -> std::same_as<Hit>;
-    { a.occluded(ray) } noexcept -> std::same_as<bool>;
+    { a.closest_hit(ray) }
+    noexcept->std::same_as<Hit>;
+    { a.occluded(ray) }
+    noexcept->std::same_as<bool>;
     { a.memory_bytes() } -> std::convertible_to<std::size_t>;
 };
 static_assert(Accelerator<BruteForce> && Accelerator<UniformGrid> && Accelerator<Bvh>);
@@ -30,7 +32,8 @@ constexpr std::array<std::string_view, 3> kAcceleratorNames{"none", "grid", "bvh
 using AnyAccelerator = std::variant<BruteForce, UniformGrid, Bvh>;  // in the order of AcceleratorKind
 
 // Builds on the calling thread; throws std::bad_alloc when memory does not suffice.
-[[nodiscard]] std::shared_ptr<const AnyAccelerator> build_accelerator(AcceleratorKind kind, std::shared_ptr<const Geometry> geometry);
+[[nodiscard]] std::shared_ptr<const AnyAccelerator> build_accelerator(AcceleratorKind kind,
+                                                                      std::shared_ptr<const Geometry> geometry);
 [[nodiscard]] std::optional<AcceleratorKind> accelerator_named(std::string_view name);
 [[nodiscard]] Hit closest_hit(const AnyAccelerator& accelerator, const Ray& ray) noexcept;
 [[nodiscard]] bool occluded(const AnyAccelerator& accelerator, const Ray& ray) noexcept;

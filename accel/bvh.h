@@ -16,15 +16,15 @@ constexpr int kBvhWidth = 8;
 constexpr int kMaxBvhDepth = 64;
 
 struct alignas(64) BvhNode {
-    float bounds[6][kBvhWidth];  // lo x y z, hi x y z; an absent child has lo = +inf, hi = -inf and is never entered
+    float bounds[6][kBvhWidth];      // lo x y z, hi x y z; an absent child has lo = +inf, hi = -inf and is never entered
     std::uint32_t child[kBvhWidth];  // inner: node index; leaf: first entry of ids
     std::uint32_t count[kBvhWidth];  // 0 = inner, else number of ids
 };
 
 struct BvhTree {
-    std::vector<BvhNode> nodes;       // nodes[0] is the root; empty for an empty scene
-    std::vector<PrimitiveId> ids;     // leaf contents
-    int depth = 0;                    // of the binary tree
+    std::vector<BvhNode> nodes;    // nodes[0] is the root; empty for an empty scene
+    std::vector<PrimitiveId> ids;  // leaf contents
+    int depth = 0;                 // of the binary tree
 };
 
 // Binned surface area heuristic (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies"),

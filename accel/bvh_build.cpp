@@ -145,9 +145,8 @@ private:
             return 0;
         }
         if (best.axis < 0) return median_split(refs, centroids);
-        const auto middle = std::partition(refs.begin(), refs.end(), [&](const Reference& r) {
-            return binning(r.bounds.center(), best.axis) < best.bin;
-        });
+        const auto middle = std::partition(refs.begin(), refs.end(),
+                                           [&](const Reference& r) { return binning(r.bounds.center(), best.axis) < best.bin; });
         return static_cast<std::uint32_t>(middle - refs.begin());
     }
 

@@ -97,12 +97,14 @@ struct TriangleHit {
 // Watertight: a ray that meets an edge or vertex shared by triangles hits at least one of them, because the sign of an
 // edge function depends on the edge alone (Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection").
 // Both faces are hit; a ray in the triangle's plane misses. Returns false for a miss.
-inline bool intersect_triangle(const PreparedRay& ray, glm::vec3 v0, glm::vec3 v1, glm::vec3 v2, float t_limit,
-                               TriangleHit& hit) noexcept {
-    const glm::vec3 a = v0 - ray.origin, b = v1 - ray.origin, c = v2 - ray.origin;
-    const float ax = a[ray.kx] - ray.shear_x * a[ray.kz], ay = a[ray.ky] - ray.shear_y * a[ray.kz];
-    const float bx = b[ray.kx] - ray.shear_x * b[ray.kz], by = b[ray.ky] - ray.shear_y * b[ray.kz];
-    const float cx = c[ray.kx] - ray.shear_x * c[ray.kz], cy = c[ray.ky] - ray.shear_y * c[ray.kz];
+inline bool intersect_triangle(const PreparedRay& ray, const glm::vec3& v0, const glm::vec3& v1, const glm::vec3& v2,
+                               float t_limit, TriangleHit& hit) noexcept {
+    // Coordinates are picked from memory by axis; permuting whole vectors would cost more than the test.
+    const float ox = ray.origin[ray.kx], oy = ray.origin[ray.ky], oz = ray.origin[ray.kz];
+    const float az = v0[ray.kz] - oz, bz = v1[ray.kz] - oz, cz = v2[ray.kz] - oz;
+    const float ax = (v0[ray.kx] - ox) - ray.shear_x * az, ay = (v0[ray.ky] - oy) - ray.shear_y * az;
+    const float bx = (v1[ray.kx] - ox) - ray.shear_x * bz, by = (v1[ray.ky] - oy) - ray.shear_y * bz;
+    const float cx = (v2[ray.kx] - ox) - ray.shear_x * cz, cy = (v2[ray.ky] - oy) - ray.shear_y * cz;
     // Most misses are certain in float: rounding is monotone, so a difference of products that is not 0 has the exact sign.
     const EdgeFunctions<float> rough{cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
     if (rough.mixed_signs()) return false;
@@ -114,11 +116,13 @@ inline bool intersect_triangle(const PreparedRay& ray, glm::vec3 v0, glm::vec3 v
     if (e.mixed_signs()) return false;
     const double det = e.u + e.v + e.w;
     if (!(std::abs(det) > 0.0)) return false;  // the ray lies in the plane, or NaN
-    auto t = static_cast<float>((e.u * a[ray.kz] + e.v * b[ray.kz] + e.w * c[ray.kz]) / (det * ray.direction[ray.kz]));
+    auto t = static_cast<float>((e.u * az + e.v * bz + e.w * cz) / (det * ray.direction[ray.kz]));
     // A needle seen edge-on leaves t badly conditioned. It cannot lie outside the triangle's own bounds, so it is
     // brought back there; this is also what makes culling by boxes exact.
     Aabb box;
-    box.grow(v0); box.grow(v1); box.grow(v2);
+    box.grow(v0);
+    box.grow(v1);
+    box.grow(v2);
     const Interval inside = slab_interval(ray, box);
     if (inside.empty()) return false;
     t = t < inside.near ? inside.near : t > inside.far ? inside.far : t;
@@ -224,7 +228,9 @@ inline void intersect(const PreparedRay& ray, const Geometry& g, std::uint32_t i
         const auto& index = g.triangles[i];
         TriangleHit h{};
         if (!intersect_triangle(ray, g.vertices[index[0]], g.vertices[index[1]], g.vertices[index[2]], best.t, h)) return;
-        hit.t = h.t; hit.u = h.u; hit.v = h.v;
+        hit.t = h.t;
+        hit.u = h.u;
+        hit.v = h.v;
     } else if constexpr (kind == PrimitiveKind::sphere) {
         hit.t = intersect_sphere(ray, g.spheres[i], best.t);
     } else if constexpr (kind == PrimitiveKind::box) {

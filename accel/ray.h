@@ -25,7 +25,9 @@ using PrimitiveId = std::uint32_t;
 constexpr PrimitiveId kNoPrimitive = 0xffffffffu;
 constexpr std::uint32_t kMaxPrimitivesPerKind = 1u << 29;
 
-constexpr PrimitiveId make_id(PrimitiveKind kind, std::uint32_t index) { return (static_cast<std::uint32_t>(kind) << 29) | index; }
+constexpr PrimitiveId make_id(PrimitiveKind kind, std::uint32_t index) {
+    return (static_cast<std::uint32_t>(kind) << 29) | index;
+}
 constexpr PrimitiveKind kind_of(PrimitiveId id) { return static_cast<PrimitiveKind>(id >> 29); }
 constexpr std::uint32_t index_of(PrimitiveId id) { return id & (kMaxPrimitivesPerKind - 1); }
 
@@ -51,8 +53,14 @@ struct Aabb {
     glm::vec3 lo{kInfinity};
     glm::vec3 hi{-kInfinity};
 
-    void grow(glm::vec3 p) { lo = glm::min(lo, p); hi = glm::max(hi, p); }
-    void grow(const Aabb& b) { lo = glm::min(lo, b.lo); hi = glm::max(hi, b.hi); }
+    void grow(glm::vec3 p) {
+        lo = glm::min(lo, p);
+        hi = glm::max(hi, p);
+    }
+    void grow(const Aabb& b) {
+        lo = glm::min(lo, b.lo);
+        hi = glm::max(hi, b.hi);
+    }
     [[nodiscard]] bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
     [[nodiscard]] glm::vec3 size() const { return hi - lo; }
     [[nodiscard]] glm::vec3 center() const { return 0.5f * lo + 0.5f * hi; }

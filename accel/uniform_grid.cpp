@@ -57,8 +57,7 @@ std::size_t count_large(const std::vector<Bounded>& primitives) {
 
 }  // namespace
 
-UniformGrid::UniformGrid(std::shared_ptr<const Geometry> geometry)
-    : geometry_(std::move(geometry)), brute_force_(geometry_) {
+UniformGrid::UniformGrid(std::shared_ptr<const Geometry> geometry) : geometry_(std::move(geometry)), brute_force_(geometry_) {
     std::vector<Bounded> primitives;
     primitives.reserve(geometry_->bounded_count());
     Aabb all;
@@ -105,7 +104,8 @@ void UniformGrid::choose_resolution(std::size_t primitives, double cells_per_pri
     const double cells = std::min(cells_per_primitive * static_cast<double>(primitives), kMaxCells);
     const double per_length = std::cbrt(cells / (sides.x * sides.y * sides.z));
     for (int i = 0; i < 3; ++i) {
-        resolution_[i] = static_cast<int>(std::clamp(std::ceil(size[i] * per_length), 1.0, static_cast<double>(kMaxCellsPerAxis)));
+        resolution_[i] =
+            static_cast<int>(std::clamp(std::ceil(size[i] * per_length), 1.0, static_cast<double>(kMaxCellsPerAxis)));
         cell_[i] = size[i] / resolution_[i];
     }
 }
@@ -122,7 +122,8 @@ void UniformGrid::cell_range(const Aabb& box, glm::ivec3& first, glm::ivec3& las
 
 std::size_t UniformGrid::cell_index(glm::ivec3 c) const {
     return (static_cast<std::size_t>(c.z) * static_cast<std::size_t>(resolution_.y) + static_cast<std::size_t>(c.y)) *
-               static_cast<std::size_t>(resolution_.x) + static_cast<std::size_t>(c.x);
+               static_cast<std::size_t>(resolution_.x) +
+           static_cast<std::size_t>(c.x);
 }
 
 std::size_t UniformGrid::count_references(const std::vector<Aabb>& bounds) const {
@@ -191,7 +192,8 @@ Hit UniformGrid::traverse(const Ray& ray) const noexcept {
     }
     // The exit from cell c along axis i comes from c itself, not from a running sum: no drift however many cells.
     const auto exit_along = [&](int i) {
-        return step[i] == 0 ? static_cast<double>(kInfinity) : (lo_[i] + (cell[i] + (step[i] > 0 ? 1 : 0)) * cell_[i] - o[i]) / d[i];
+        return step[i] == 0 ? static_cast<double>(kInfinity)
+                            : (lo_[i] + (cell[i] + (step[i] > 0 ? 1 : 0)) * cell_[i] - o[i]) / d[i];
     };
     glm::dvec3 exit(exit_along(0), exit_along(1), exit_along(2));
     for (;;) {

@@ -42,7 +42,7 @@ private:
     glm::ivec3 resolution_{0};
     std::vector<std::uint32_t> offsets_;  // of each cell's ids, x fastest; one more at the end
     std::vector<PrimitiveId> ids_;
-    std::vector<PrimitiveId> large_;      // kept out of the cells, tested for every ray
+    std::vector<PrimitiveId> large_;  // kept out of the cells, tested for every ray
 };
 
 }  // namespace glint

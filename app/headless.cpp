@@ -64,9 +64,13 @@ void apply_crop(Frame& frame, const Options& o) {
     if (!o.crop) return;
     const auto [x0, x1, y0, y1] = *o.crop;
     if (x0 >= x1 || y0 >= y1 || x1 > frame.width || y1 > frame.height) {
-        throw UsageError(fmt::format("--crop: {},{},{},{} is no window of a {}x{} picture", x0, x1, y0, y1, frame.width, frame.height));
+        throw UsageError(
+            fmt::format("--crop: {},{},{},{} is no window of a {}x{} picture", x0, x1, y0, y1, frame.width, frame.height));
     }
-    frame.x0 = x0; frame.x1 = x1; frame.y0 = y0; frame.y1 = y1;
+    frame.x0 = x0;
+    frame.x1 = x1;
+    frame.y0 = y0;
+    frame.y1 = y1;
 }
 
 // Progress on stderr: redrawn on a terminal, one line every five seconds elsewhere.
@@ -78,7 +82,9 @@ public:
         next_ = p.seconds + (terminal_ ? 0.2 : 5.0);
         if (p.seconds < 1.0) return;
         std::fputs(fmt::format("{}{}-{} of {} spp, {:.1f} s, {:.2f} Mrays/s{}", terminal_ ? "\r" : "", p.spp_min, p.spp_max, spp_,
-                               p.seconds, static_cast<double>(p.rays.total()) / p.seconds * 1e-6, terminal_ ? "  " : "\n").c_str(), stderr);
+                               p.seconds, static_cast<double>(p.rays.total()) / p.seconds * 1e-6, terminal_ ? "  " : "\n")
+                       .c_str(),
+                   stderr);
         shown_ = true;
     }
     void end() const {
@@ -127,7 +133,8 @@ void print_warnings(const Scene& scene, const Options& options) {
     constexpr std::size_t kShown = 5;
     const std::size_t shown = options.verbose ? scene.warnings.size() : std::min(kShown, scene.warnings.size());
     for (std::size_t i = 0; i < shown; ++i) fmt::print(stderr, "{}\n", scene.warnings[i]);
-    if (shown < scene.warnings.size()) fmt::print(stderr, "and {} more warnings (--verbose shows them)\n", scene.warnings.size() - shown);
+    if (shown < scene.warnings.size())
+        fmt::print(stderr, "and {} more warnings (--verbose shows them)\n", scene.warnings.size() - shown);
 }
 
 int run_render(const Options& o) {
@@ -158,7 +165,8 @@ int run_render(const Options& o) {
 
     Image image;
     renderer.resolve(image);
-    const std::string bytes = format == Format::pfm ? encode_pfm(image) : encode_png(to_display(image, job.display), job.display.transfer);
+    const std::string bytes =
+        format == Format::pfm ? encode_pfm(image) : encode_png(to_display(image, job.display), job.display.transfer);
     const bool to_stdout = o.output == "-";
     if (to_stdout) {
         if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0) {
@@ -193,13 +201,14 @@ int run_info(const Options& o) {
     fmt::print("scene {}\n", scene->name);
     fmt::print("triangles {}\nspheres {}\nboxes {}\ncones {}\nplanes {}\n", g.triangles.size(), g.spheres.size(), g.boxes.size(),
                g.cones.size(), g.planes.size());
-    fmt::print("vertices {}\nmaterials {}\nlights {}\ncameras {}\n", g.vertices.size(), scene->materials.size(), scene->lights.size(),
-               scene->cameras.size());
+    fmt::print("vertices {}\nmaterials {}\nlights {}\ncameras {}\n", g.vertices.size(), scene->materials.size(),
+               scene->lights.size(), scene->cameras.size());
     const Aabb box = g.bounds();
     if (!box.empty()) {
         fmt::print("bounds {:g} {:g} {:g} to {:g} {:g} {:g}\n", box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z);
     }
-    fmt::print("resolution {}x{}\nspp {}\n", scene->width, scene->height, scene->spp > 0 ? std::to_string(scene->spp) : "not given");
+    fmt::print("resolution {}x{}\nspp {}\n", scene->width, scene->height,
+               scene->spp > 0 ? std::to_string(scene->spp) : "not given");
     std::string features;
     for (std::size_t i = 0; i < kFeatureNames.size(); ++i) {
         if (features_of(*scene).has(static_cast<Feature>(i))) features += fmt::format(" {}", kFeatureNames[i]);
@@ -213,7 +222,8 @@ int run_info(const Options& o) {
 
 int run_list() {
     fmt::print("Built-in scenes\n");
-    for (const BuiltinScene& s : builtin_scenes()) fmt::print("  builtin:{:<12} {:<28} {}\n", s.name, s.parameters, s.description);
+    for (const BuiltinScene& s : builtin_scenes())
+        fmt::print("  builtin:{:<12} {:<28} {}\n", s.name, s.parameters, s.description);
     fmt::print("Accelerators\n  auto");
     for (const auto name : kAcceleratorNames) fmt::print(" {}", name);
     fmt::print("\nSamplers\n ");

@@ -65,7 +65,8 @@ std::string default_scene() {
     namespace fs = std::filesystem;
     std::error_code ignored;
     const fs::path binary = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-    for (const fs::path& folder : {binary / "assets", binary / "../share/glint/assets", fs::path(GLINT_ASSETS), fs::path(GLINT_INSTALLED_ASSETS)}) {
+    for (const fs::path& folder :
+         {binary / "assets", binary / "../share/glint/assets", fs::path(GLINT_ASSETS), fs::path(GLINT_INSTALLED_ASSETS)}) {
         const fs::path scene = folder / "showpiece.p3f";
         if (fs::is_regular_file(scene, ignored)) return scene.lexically_normal().string();
     }

@@ -56,7 +56,8 @@ public:
             o_.accelerator_given = true;
             o_.accelerator = i == 0 ? std::nullopt : std::optional(static_cast<AcceleratorKind>(i - 1));
         });
-        text("--features", "LIST", "of aa,dof,soft,fuzzy,specular,shadows,reflections,refractions; a plain list replaces what the "
+        text("--features", "LIST",
+             "of aa,dof,soft,fuzzy,specular,shadows,reflections,refractions; a plain list replaces what the "
              "scene starts with, +name and -name edit it; also all, whitted (one centred ray, spp 1)",
              [this](auto, auto v) { o_.features = v; });
         text("--fresnel", "exact|schlick", "reflectance of glass", [this](auto n, auto v) {
@@ -75,20 +76,21 @@ public:
 
     void camera_options() {
         text("--camera-position", "X,Y,Z", "where the eye is", [this](auto n, auto v) { o_.camera_position = vector3(n, v); });
-        text("--camera-focal-point", "X,Y,Z", "what it looks at", [this](auto n, auto v) { o_.camera_focal_point = vector3(n, v); });
+        text("--camera-focal-point", "X,Y,Z", "what it looks at",
+             [this](auto n, auto v) { o_.camera_focal_point = vector3(n, v); });
         text("--camera-view-up", "X,Y,Z", "up in the picture", [this](auto n, auto v) {
             o_.camera_view_up = vector3(n, v);
             if (*o_.camera_view_up == glm::vec3(0.0f)) refuse_value(n, v, "a direction");
         });
-        text("--camera-view-angle", "DEG", "vertical field of view", [this](auto n, auto v) {
-            o_.view_angle = number(n, v, 0.001f, 179.0f, "an angle from 0.001 to 179 degrees");
-        });
+        text("--camera-view-angle", "DEG", "vertical field of view",
+             [this](auto n, auto v) { o_.view_angle = number(n, v, 0.001f, 179.0f, "an angle from 0.001 to 179 degrees"); });
         text("--camera-index", "N", "the scene's camera to use, from 0",
              [this](auto n, auto v) { o_.camera_index = number(n, v, 0, 1 << 20, "a camera's number"); });
-        text("--background", "scene|color|environment", "what rays see that hit nothing; environment = a procedural sky where the scene has none", [this](auto n, auto v) {
-            o_.settings.background =
-                static_cast<Background>(choice(n, v, std::array<std::string_view, 3>{"scene", "color", "environment"}));
-        });
+        text("--background", "scene|color|environment",
+             "what rays see that hit nothing; environment = a procedural sky where the scene has none", [this](auto n, auto v) {
+                 o_.settings.background =
+                     static_cast<Background>(choice(n, v, std::array<std::string_view, 3>{"scene", "color", "environment"}));
+             });
         text("--environment,--hdri-file", "DIR", "folder of six pictures right, left, top, bottom, front, back",
              [this](auto, auto v) { o_.environment = v; });
         text("--exposure", "EV", "stops brighter (or darker) on display; never touches PFM",
@@ -103,9 +105,8 @@ public:
     void output_options() {
         text("-o,--output", "FILE", "a .png or .pfm file, - for PNG on stdout; {scene} {accel} {spp} {n} are filled in",
              [this](auto, auto v) { o_.output = v; });
-        text("--time", "S", "seconds to render at most", [this](auto n, auto v) {
-            o_.time = number(n, v, 0.0, 1e9, "a number of seconds");
-        });
+        text("--time", "S", "seconds to render at most",
+             [this](auto n, auto v) { o_.time = number(n, v, 0.0, 1e9, "a number of seconds"); });
         text("--crop", "x0,x1,y0,y1", "a window, counted from the top left, x1 and y1 excluded", [this](auto n, auto v) {
             const auto parts = split(v, ",");
             if (parts.size() != 4) refuse_value(n, v, "four numbers x0,x1,y0,y1");
@@ -154,13 +155,14 @@ private:
     void text(const std::string& names, const std::string& value, const std::string& help, Check check) {
         const std::string shown = names.substr(0, names.find(','));
         const std::string name = names.starts_with("-o") ? "--output" : shown;
-        app_.add_option_function<std::string>(names, [check, name](const std::string& v) { check(std::string_view(name), std::string_view(v)); },
-                                              help)
+        app_.add_option_function<std::string>(
+                names, [check, name](const std::string& v) { check(std::string_view(name), std::string_view(v)); }, help)
             ->type_name(value);
     }
     template <class Set>
     void length(const std::string& name, const std::string& help, Set set) {
-        text(name, "X", help, [set](std::string_view n, std::string_view v) { set(number(n, v, 0.0f, 1e18f, "a number of at least 0")); });
+        text(name, "X", help,
+             [set](std::string_view n, std::string_view v) { set(number(n, v, 0.0f, 1e18f, "a number of at least 0")); });
     }
 
     [[nodiscard]] std::string option_help() const {

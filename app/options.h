@@ -23,15 +23,15 @@ struct Options {
     Command command = Command::view;
     std::vector<std::string> arguments;  // scenes, or the two pictures of `compare`
     std::string output;
-    int width = 0, height = 0;  // 0 = the scene's
-    int spp = 0;                // 0 = not given
+    int width = 0, height = 0;                              // 0 = the scene's
+    int spp = 0;                                            // 0 = not given
     double time = std::numeric_limits<double>::infinity();  // seconds
-    int threads = 0;            // 0 = all that the process may use, -1 = all but one
-    std::optional<AcceleratorKind> accelerator;  // empty = auto, or what the scene says
+    int threads = 0;                                        // 0 = all that the process may use, -1 = all but one
+    std::optional<AcceleratorKind> accelerator;             // empty = auto, or what the scene says
     bool accelerator_given = false;
-    std::string features;       // LIST as typed; empty = not given
+    std::string features;  // LIST as typed; empty = not given
     std::optional<int> depth;
-    RenderSettings settings;    // what is independent of the scene
+    RenderSettings settings;  // what is independent of the scene
     std::optional<float> aperture, focus, view_angle;
     std::optional<glm::vec3> camera_position, camera_focal_point, camera_view_up;
     int camera_index = 0;
@@ -39,7 +39,7 @@ struct Options {
     float exposure = 0.0f;
     std::optional<Transfer> transfer;
     std::optional<std::array<int, 4>> crop;  // x0, x1, y0, y1 from the top left, upper bounds excluded
-    double threshold = 0.0;     // compare: largest RMSE that still counts as equal
+    double threshold = 0.0;                  // compare: largest RMSE that still counts as equal
     bool stats_json = false, quiet = false, verbose = false, strict = false;
 };
 

@@ -15,7 +15,9 @@ Camera::Camera(const CameraPose& pose, int width, int height) {
     if (!(glm::dot(right, right) > 0.0)) {
         // `up` along the view: any axis will do, so take the one least along it.
         const glm::dvec3 a = glm::abs(back);
-        const glm::dvec3 axis = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0) : a.y <= a.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+        const glm::dvec3 axis = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0)
+                                : a.y <= a.z             ? glm::dvec3(0, 1, 0)
+                                                         : glm::dvec3(0, 0, 1);
         right = glm::cross(axis, back);
     }
     right /= std::sqrt(glm::dot(right, right));

@@ -22,7 +22,7 @@ struct Environment {
     enum class Kind { color, cube, sky };
 
     Kind kind = Kind::color;
-    glm::vec3 color{0.0f};  // seen everywhere (color), or wherever the background is forced to a colour
+    glm::vec3 color{0.0f};          // seen everywhere (color), or wherever the background is forced to a colour
     std::array<CubeFace, 6> faces;  // right, left, top, bottom, front, back
     // sky: a clear-sky gradient between horizon and zenith with a ground colour below and a sun disk.
     glm::vec3 up{0.0f, 1.0f, 0.0f};

@@ -30,8 +30,10 @@ int Framebuffer::samples(std::size_t tile, std::uint64_t generation) const {
 
 void Framebuffer::copy_out(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums) const {
     const Tile& t = tiles_[tile];
-    if (t.generation == generation) sums = t.sums;
-    else sums.assign(t.rect.pixels(), PixelSum());
+    if (t.generation == generation)
+        sums = t.sums;
+    else
+        sums.assign(t.rect.pixels(), PixelSum());
 }
 
 void Framebuffer::write_back(std::size_t tile, std::uint64_t generation, const std::vector<PixelSum>& sums, int samples) {
@@ -55,7 +57,8 @@ void Framebuffer::resolve(std::size_t tile, std::uint64_t generation, Image& ima
     std::size_t i = 0;
     for (int y = t.rect.y0; y < t.rect.y1; ++y) {
         for (int x = t.rect.x0; x < t.rect.x1; ++x, ++i) {
-            const auto block = static_cast<std::size_t>((y - t.rect.y0) / kPreviewBlock * blocks + (x - t.rect.x0) / kPreviewBlock);
+            const auto block =
+                static_cast<std::size_t>((y - t.rect.y0) / kPreviewBlock * blocks + (x - t.rect.x0) / kPreviewBlock);
             image.at(x - area_.x0, y - area_.y0) = sampled ? mean(t.sums[i], t.samples) : t.preview[block];
         }
     }

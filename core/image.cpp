@@ -21,9 +21,7 @@ namespace {
 // The largest picture that is read back: 2^28 pixels, as for rendering.
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 
-float srgb_encode(float x) {
-    return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
-}
+float srgb_encode(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f; }
 
 std::uint8_t display_byte(float x, float scale, Transfer transfer) {
     x = std::clamp(x * scale, 0.0f, 1.0f);
@@ -125,7 +123,9 @@ std::string encode_pfm(const Image& image) {
 }
 
 void write_file_atomically(const std::filesystem::path& path, const std::string& bytes) {
-    const auto refuse = [&](const std::string& why) { return ImageError(fmt::format("{}: cannot write: {}", path.string(), why)); };
+    const auto refuse = [&](const std::string& why) {
+        return ImageError(fmt::format("{}: cannot write: {}", path.string(), why));
+    };
     // A device or pipe cannot be replaced by renaming, and need not be.
     std::error_code ignored;
     const auto status = std::filesystem::status(path, ignored);
@@ -163,7 +163,8 @@ Image read_image(const std::filesystem::path& path) {
     if (bytes.starts_with("PF") || bytes.starts_with("Pf")) return read_pfm(contents, name);
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     int width = 0, height = 0, channels = 0;
-    if (bytes.size() > std::size_t{1} << 30 || !stbi_info_from_memory(data, static_cast<int>(bytes.size()), &width, &height, &channels)) {
+    if (bytes.size() > std::size_t{1} << 30 ||
+        !stbi_info_from_memory(data, static_cast<int>(bytes.size()), &width, &height, &channels)) {
         throw ImageError(name + ": not a PNG, JPEG or PFM picture");
     }
     if (std::int64_t{width} * height > kMaxPixels) throw ImageError(name + ": the picture is too large");

@@ -17,8 +17,12 @@ struct Image {
     int width = 0, height = 0;
     std::vector<glm::vec3> pixels;  // linear radiance, row-major, top row first
 
-    [[nodiscard]] glm::vec3& at(int x, int y) { return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)]; }
-    [[nodiscard]] glm::vec3 at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)]; }
+    [[nodiscard]] glm::vec3& at(int x, int y) {
+        return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+    }
+    [[nodiscard]] glm::vec3 at(int x, int y) const {
+        return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+    }
 };
 
 // Display bytes, three a pixel, top row first.
@@ -48,8 +52,8 @@ void write_file_atomically(const std::filesystem::path& path, const std::string&
 [[nodiscard]] Image read_image(const std::filesystem::path& path);
 
 struct ImageDifference {
-    double rmse = 0.0;      // over pixels and channels
-    double max = 0.0;       // largest absolute difference of a channel
+    double rmse = 0.0;          // over pixels and channels
+    double max = 0.0;           // largest absolute difference of a channel
     std::size_t differing = 0;  // pixels with any difference
     std::size_t pixels = 0;
 };

@@ -16,16 +16,16 @@ struct Light {
 
     Shape shape = Shape::point;
     Falloff falloff = Falloff::none;
-    glm::vec3 position{0.0f};   // the point; the quad's corner; the sphere's centre
+    glm::vec3 position{0.0f};  // the point; the quad's corner; the sphere's centre
     // quad: position + s*edge1 + t*edge2, facing cross(edge1, edge2). point: a parallelogram centred on the point over
     // which it is spread (its mean is what counts; the paper's soft shadow); zero = a true point.
     glm::vec3 edge1{0.0f};
     glm::vec3 edge2{0.0f};
-    float radius = 0.0f;        // sphere
+    float radius = 0.0f;                     // sphere
     glm::vec3 direction{0.0f, 0.0f, -1.0f};  // unit, the way the light travels: directional lights and spot axes
-    float cos_inner = -2.0f;    // spot: full inside cos_inner, none outside cos_outer; -2 = no spot
+    float cos_inner = -2.0f;                 // spot: full inside cos_inner, none outside cos_outer; -2 = no spot
     float cos_outer = -2.0f;
-    float range = 0.0f;         // physical points: fades to 0 at this distance (KHR_lights_punctual); 0 = unlimited
+    float range = 0.0f;  // physical points: fades to 0 at this distance (KHR_lights_punctual); 0 = unlimited
     // none: colour. physical: point and spot = radiant intensity, directional = irradiance, quad and sphere = radiance.
     glm::vec3 emission{1.0f};
 
@@ -37,8 +37,8 @@ struct Light {
 
 // One point of a light as seen from a receiver.
 struct LightSample {
-    glm::vec3 wi{0.0f};        // unit, towards the light
-    glm::vec3 point{0.0f};     // on the light (directional: unused)
+    glm::vec3 wi{0.0f};     // unit, towards the light
+    glm::vec3 point{0.0f};  // on the light (directional: unused)
     bool at_infinity = false;
     glm::vec3 arriving{0.0f};  // light per receiver cosine: what diffuse * n.l multiplies; black = nothing arrives
 };

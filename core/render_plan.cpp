@@ -22,7 +22,9 @@ bool has_glass(const Scene& scene) {
 void spread_over_square(Light& light, glm::vec3 up, float half) {
     const glm::dvec3 n = glm::normalize(glm::dvec3(up));
     const glm::dvec3 a = glm::abs(n);
-    const glm::dvec3 axis = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0) : a.y <= a.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+    const glm::dvec3 axis = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0)
+                            : a.y <= a.z             ? glm::dvec3(0, 1, 0)
+                                                     : glm::dvec3(0, 0, 1);
     const glm::dvec3 e1 = glm::normalize(glm::cross(axis, n)), e2 = glm::cross(n, e1);
     light.edge1 = glm::vec3(e1 * (2.0 * half));
     light.edge2 = glm::vec3(e2 * (2.0 * half));
@@ -40,7 +42,8 @@ MediumStack medium_at(const Scene& scene, glm::vec3 eye) {
     for (std::size_t i = 0; i < g.spheres.size(); ++i) {
         const glm::dvec3 d = glm::dvec3(eye) - glm::dvec3(g.spheres[i].center);
         const double r = g.spheres[i].radius;
-        if (scene.materials[sphere_material[i]].glass && glm::dot(d, d) < r * r) around.push_back({2.0f * g.spheres[i].radius, sphere_material[i]});
+        if (scene.materials[sphere_material[i]].glass && glm::dot(d, d) < r * r)
+            around.push_back({2.0f * g.spheres[i].radius, sphere_material[i]});
     }
     const auto& box_material = scene.material_of[static_cast<std::size_t>(PrimitiveKind::box)];
     for (std::size_t i = 0; i < g.boxes.size(); ++i) {
@@ -61,11 +64,13 @@ MediumStack medium_at(const Scene& scene, glm::vec3 eye) {
 
 bool can_act(const Scene& scene, Feature feature) {
     switch (feature) {
-        case Feature::aa: case Feature::dof: return true;
+        case Feature::aa:
+        case Feature::dof: return true;
         case Feature::soft:
             return std::any_of(scene.lights.begin(), scene.lights.end(),
                                [](const Light& l) { return l.shape != Light::Shape::directional; });
-        case Feature::specular: case Feature::shadows: return !scene.lights.empty();
+        case Feature::specular:
+        case Feature::shadows: return !scene.lights.empty();
         case Feature::fuzzy: return has_mirror(scene);
         case Feature::reflections: return has_mirror(scene) || has_glass(scene);
         case Feature::refractions: return has_glass(scene);
@@ -114,8 +119,10 @@ RenderPlan plan_render(const Scene& scene, const RenderSettings& settings, const
             light = without_area(light);
         } else if (add_spread && light.shape == Light::Shape::point) {
             const float half = settings.light_size.value_or(home.target_distance() / 60.0f);
-            if (half > 0.0f) spread_over_square(light, scene.world_up(), half);
-            else light = without_area(light);
+            if (half > 0.0f)
+                spread_over_square(light, scene.world_up(), half);
+            else
+                light = without_area(light);
         }
     }
     std::erase_if(plan.lights, [](const Light& l) { return l.emission == glm::vec3(0.0f); });
@@ -127,8 +134,10 @@ RenderPlan plan_render(const Scene& scene, const RenderSettings& settings, const
     if (plan.reflections && has_mirror(scene)) {
         plan.kernel |= kernel_part::mirror;
         if (wants(Feature::fuzzy)) {
-            if (settings.roughness) plan.forced_fuzz = *settings.roughness;
-            else if (!own.has(Feature::fuzzy)) plan.default_fuzz = 0.3f;
+            if (settings.roughness)
+                plan.forced_fuzz = *settings.roughness;
+            else if (!own.has(Feature::fuzzy))
+                plan.default_fuzz = 0.3f;
             if (plan.forced_fuzz != 0.0f) plan.kernel |= kernel_part::fuzzy;
         }
     }

@@ -16,12 +16,12 @@ constexpr unsigned mirror = 1, glass = 2, soft = 4, fuzzy = 8, count = 16;
 }
 
 struct RenderPlan {
-    unsigned kernel = 0;             // sum of kernel_parts
-    std::vector<Light> lights;       // with the extent they have in this frame
-    CameraPose camera;               // with the lens it has in this frame
-    MediumStack medium;              // what the camera stands in
-    float default_fuzz = 0.0f;       // fuzz radius of mirrors without one of their own
-    float forced_fuzz = -1.0f;       // fuzz radius of every mirror; negative = not forced
+    unsigned kernel = 0;        // sum of kernel_parts
+    std::vector<Light> lights;  // with the extent they have in this frame
+    CameraPose camera;          // with the lens it has in this frame
+    MediumStack medium;         // what the camera stands in
+    float default_fuzz = 0.0f;  // fuzz radius of mirrors without one of their own
+    float forced_fuzz = -1.0f;  // fuzz radius of every mirror; negative = not forced
     int depth = 8;
     bool jitter = true, highlights = true, shadows = true, reflections = true, refractions = true;
     bool background_is_color = false;
@@ -33,6 +33,10 @@ struct RenderPlan {
         return forced_fuzz >= 0.0f ? forced_fuzz : m.roughness > 0.0f ? m.roughness : default_fuzz;
     }
     [[nodiscard]] bool has(unsigned part) const { return (kernel & part) != 0; }
+    // Whether two samples of a pixel can differ. If not, one says it all.
+    [[nodiscard]] bool stochastic() const {
+        return jitter || camera.lens_radius > 0.0f || has(kernel_part::soft) || has(kernel_part::fuzzy);
+    }
 };
 
 // Features that are turned on where the scene has no data of its own take scale-free defaults from the scene's first

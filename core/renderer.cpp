@@ -68,8 +68,10 @@ struct Renderer::State {
     }
     void run_clock(bool on) {
         if (on == running) return;
-        if (on) running_since = Clock::now();
-        else seconds_before = seconds();
+        if (on)
+            running_since = Clock::now();
+        else
+            seconds_before = seconds();
         running = on;
     }
     [[nodiscard]] bool finished() const { return order != nullptr && queue_generation == order->generation && tiles_left == 0; }
@@ -93,7 +95,8 @@ struct Renderer::State {
     }
 
     void work_loop();
-    void render(const Order& o, const Task& task, std::vector<PixelSum>& sums, std::vector<glm::vec3>& blocks, Workspace& workspace);
+    void render(const Order& o, const Task& task, std::vector<PixelSum>& sums, std::vector<glm::vec3>& blocks,
+                Workspace& workspace);
 };
 
 void Renderer::State::work_loop() {
@@ -168,6 +171,7 @@ std::uint64_t Renderer::restart(Frame frame) {
     order->plan = plan_render(*frame.scene, frame.settings, frame.camera);
     order->camera = Camera(order->plan.camera, frame.width, frame.height);
     order->frame = std::move(frame);
+    if (!order->plan.stochastic()) order->frame.spp = 1;
     State& s = *state_;
     std::shared_ptr<const Order> old;  // freed outside the lock: it may hold the last reference to a scene
     std::uint64_t generation = 0;

@@ -24,16 +24,17 @@ struct Frame {
     RenderSettings settings;
     int width = 0, height = 0;
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // x1 = y1 = 0: the whole picture
-    int spp = 64;                        // samples a pixel; the workers idle when they are reached
+    int spp = 64;                        // samples a pixel; the workers idle when they are reached. Where nothing is
+                                         // random they are all alike, and one is taken
 };
 
 struct Progress {
-    std::uint64_t generation = 0;    // of the frame that is being rendered
-    bool preview_complete = false;   // the coarse first look (or more) covers the whole picture
-    bool finished = false;           // every pixel has its samples
-    int spp_min = 0, spp_max = 0;    // samples a pixel so far
-    double seconds = 0.0;            // since restart(), pauses excluded; stands still when finished
-    RayCounts rays;                  // and the samples and branches that were dropped
+    std::uint64_t generation = 0;   // of the frame that is being rendered
+    bool preview_complete = false;  // the coarse first look (or more) covers the whole picture
+    bool finished = false;          // every pixel has its samples
+    int spp_min = 0, spp_max = 0;   // samples a pixel so far
+    double seconds = 0.0;           // since restart(), pauses excluded; stands still when finished
+    RayCounts rays;                 // and the samples and branches that were dropped
 };
 
 class Renderer {

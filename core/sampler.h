@@ -13,7 +13,11 @@ namespace glint {
 
 // A bijection of 32 bits that passes avalanche tests (Ettinger's "lowbias32" by the search of Wellons 2018).
 constexpr std::uint32_t hash(std::uint32_t x) {
-    x ^= x >> 16; x *= 0x7feb352du; x ^= x >> 15; x *= 0x846ca68bu; x ^= x >> 16;
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    x ^= x >> 16;
     return x;
 }
 constexpr std::uint32_t hash(std::uint32_t a, std::uint32_t b) { return hash(a ^ (hash(b) + 0x9e3779b9u + (a << 6) + (a >> 2))); }
@@ -24,7 +28,8 @@ constexpr std::uint32_t kStrata = 8;
 class Sampler {
 public:
     Sampler(SamplerKind kind, std::uint32_t x, std::uint32_t y, std::uint64_t index, std::uint64_t seed)
-        : kind_(kind), index_(static_cast<std::uint32_t>(index)),
+        : kind_(kind),
+          index_(static_cast<std::uint32_t>(index)),
           pixel_(hash(hash(hash(x, y), static_cast<std::uint32_t>(seed)),
                       static_cast<std::uint32_t>(seed >> 32) ^ static_cast<std::uint32_t>(index >> 32))) {}
 

@@ -15,7 +15,7 @@
 namespace glint {
 
 struct LoadOptions {
-    bool load_environment = true;  // false: pictures of a sky box are not even opened
+    bool load_environment = true;       // false: pictures of a sky box are not even opened
     std::filesystem::path environment;  // a folder that replaces the scene's own environment; empty = none
 };
 

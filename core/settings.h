@@ -41,7 +41,7 @@ struct RenderSettings {
     Fresnel fresnel = Fresnel::exact;
     SamplerKind sampler = SamplerKind::sobol;
     Background background = Background::scene;
-    int depth = 8;                    // bounces after the camera ray
+    int depth = 8;  // bounces after the camera ray
     std::uint64_t seed = 0;
     std::optional<float> light_size;  // half side of the square put around point lights, scene units
     std::optional<float> roughness;   // fuzz radius of every mirror

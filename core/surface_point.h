@@ -11,10 +11,10 @@ namespace glint {
 
 struct SurfacePoint {
     glm::vec3 p;
-    glm::vec3 ng;         // geometric normal, unit, on the side of wo
-    glm::vec3 ns;         // shading normal, unit, in the hemisphere of ng
-    bool outside;         // wo is on the outer side (the winding's front)
-    float error;          // how far a later intersection may misjudge the surface's position, scene units
+    glm::vec3 ng;  // geometric normal, unit, on the side of wo
+    glm::vec3 ns;  // shading normal, unit, in the hemisphere of ng
+    bool outside;  // wo is on the outer side (the winding's front)
+    float error;   // how far a later intersection may misjudge the surface's position, scene units
     std::uint32_t material;
 };
 

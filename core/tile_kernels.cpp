@@ -22,7 +22,7 @@ struct Job {
     const KernelInput& in;
     TileRect rect;
     int first, last;
-    std::vector<PixelSum>* sums;      // null for a preview
+    std::vector<PixelSum>* sums;  // null for a preview
     std::vector<glm::vec3>* preview;
     Workspace& work;
 };
@@ -76,13 +76,15 @@ bool dispatch(const Job& job) { return kKernels[job.in.accelerator.index()][job.
 
 }  // namespace
 
-bool render_tile(const KernelInput& input, TileRect rect, int first, int last, std::vector<PixelSum>& sums, Workspace& workspace) {
+bool render_tile(const KernelInput& input, TileRect rect, int first, int last, std::vector<PixelSum>& sums,
+                 Workspace& workspace) {
     return dispatch({input, rect, first, last, &sums, nullptr, workspace});
 }
 
 bool render_preview(const KernelInput& input, TileRect rect, std::vector<glm::vec3>& blocks, Workspace& workspace) {
-    blocks.assign(static_cast<std::size_t>(preview_blocks(rect.x1 - rect.x0)) * static_cast<std::size_t>(preview_blocks(rect.y1 - rect.y0)),
-                  glm::vec3(0.0f));
+    blocks.assign(
+        static_cast<std::size_t>(preview_blocks(rect.x1 - rect.x0)) * static_cast<std::size_t>(preview_blocks(rect.y1 - rect.y0)),
+        glm::vec3(0.0f));
     return dispatch({input, rect, 0, 1, nullptr, &blocks, workspace});
 }
 

@@ -9,8 +9,8 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include "core/image.h"
 
@@ -97,7 +97,8 @@ TEST_F(CommandLine, ARefusedSceneIsOneLineAndExit3) {
     expect_refused("render " + write("cut.p3f", "v\nfrom 1 2 3\nat 0 0") + " -o x.png", 3, "cut.p3f:3");
     expect_refused("render " + write("huge.p3f", "mesh 1000000000000 1000000000000\n0 0 0\n") + " -o x.png", 3, "huge.p3f:1");
     expect_refused("render " + write("nan.p3f", "s 0 0 nan 1\n") + " -o x.png", 3, "nan.p3f:1");
-    expect_refused("render " + write("binary.glb", std::string("glTF\x02\0\0\0\xff\xff\xff\xff", 12)) + " -o x.png", 3, "binary.glb");
+    expect_refused("render " + write("binary.glb", std::string("glTF\x02\0\0\0\xff\xff\xff\xff", 12)) + " -o x.png", 3,
+                   "binary.glb");
     expect_refused("render " + write("scene.xyz", "") + " -o x.png", 3, "scene.xyz");
     expect_refused("info " + path("missing.gltf"), 3, "missing.gltf");
 }
@@ -164,7 +165,8 @@ TEST_F(CommandLine, StatsCountWhatWasAsked) {
 
 TEST_F(CommandLine, OneShaForEveryAcceleratorThreadCountAndRepetition) {
     std::string expected;
-    for (const char* variant : {"--accel none --threads 1", "--accel grid --threads 2", "--accel bvh --threads 3", "--accel auto"}) {
+    for (const char* variant :
+         {"--accel none --threads 1", "--accel grid --threads 2", "--accel bvh --threads 3", "--accel auto"}) {
         ASSERT_EQ(glint(quick + "--seed 1 --features all -o " + path("a.png") + " " + variant).code, 0);
         if (expected.empty()) expected = contents(path("a.png"));
         EXPECT_EQ(contents(path("a.png")), expected) << variant;
@@ -185,7 +187,8 @@ TEST_F(CommandLine, FeatureListsReplaceOrEdit) {
 
 TEST_F(CommandLine, CameraOptionsMoveTheCamera) {
     // The scene's own camera, spelt out.
-    const std::string own = "--camera-position 2.1,1.3,1.7 --camera-focal-point 0,0,0 --camera-view-up 0,0,1 --camera-view-angle 45";
+    const std::string own =
+        "--camera-position 2.1,1.3,1.7 --camera-focal-point 0,0,0 --camera-view-up 0,0,1 --camera-view-angle 45";
     ASSERT_EQ(glint(quick + "-o " + path("a.png")).code, 0);
     ASSERT_EQ(glint(quick + own + " -o " + path("b.png")).code, 0);
     EXPECT_EQ(contents(path("a.png")), contents(path("b.png")));
@@ -212,7 +215,8 @@ TEST_F(CommandLine, NamesAreFilledIn) {
 }
 
 TEST_F(CommandLine, TimeEndsARenderAndIsNamed) {
-    const Outcome r = glint("render builtin:balls,level=2 --resolution 64x48 --spp 1000000 --time 0.3 --stats json -o " + path("a.png"));
+    const Outcome r =
+        glint("render builtin:balls,level=2 --resolution 64x48 --spp 1000000 --time 0.3 --stats json -o " + path("a.png"));
     ASSERT_EQ(r.code, 0) << r.err;
     EXPECT_EQ(nlohmann::json::parse(r.out)["stopped_by"], "time");
     EXPECT_TRUE(fs::exists(folder / "a.png"));
@@ -223,8 +227,8 @@ TEST_F(CommandLine, SignalsSaveWhatWasRendered) {
         const std::string picture = path(fmt::format("{}.png", signal));
         const pid_t child = fork();
         if (child == 0) {
-            execl(GLINT_BINARY, "glint", "render", "builtin:balls,level=2", "--resolution", "64x48", "--spp", "100000000", "--quiet", "-o",
-                  picture.c_str(), nullptr);
+            execl(GLINT_BINARY, "glint", "render", "builtin:balls,level=2", "--resolution", "64x48", "--spp", "100000000",
+                  "--quiet", "-o", picture.c_str(), nullptr);
             _exit(127);
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(700));
@@ -240,16 +244,19 @@ TEST_F(CommandLine, SignalsSaveWhatWasRendered) {
 TEST_F(CommandLine, HelpVersionListAndInfoGoToStdout) {
     const Outcome help = glint("render --help");
     EXPECT_EQ(help.code, 0);
-    for (const char* option : {"--resolution", "--spp", "--features", "--accel", "--crop", "--stats", "--hdri-file", "--camera-view-up"}) {
+    for (const char* option :
+         {"--resolution", "--spp", "--features", "--accel", "--crop", "--stats", "--hdri-file", "--camera-view-up"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     }
     // What is not built yet is not promised.
-    for (const char* option : {"--noise", "--preset", "--checkpoint", "--isa"}) EXPECT_EQ(help.out.find(option), std::string::npos) << option;
+    for (const char* option : {"--noise", "--preset", "--checkpoint", "--isa"})
+        EXPECT_EQ(help.out.find(option), std::string::npos) << option;
     EXPECT_NE(glint("--help").out.find("Keys"), std::string::npos);
     EXPECT_NE(glint("--version").out.find("glint "), std::string::npos);
     const Outcome list = glint("list");
     EXPECT_EQ(list.code, 0);
-    for (const char* word : {"builtin:balls", "builtin:cornell", "bvh", "sobol"}) EXPECT_NE(list.out.find(word), std::string::npos) << word;
+    for (const char* word : {"builtin:balls", "builtin:cornell", "bvh", "sobol"})
+        EXPECT_NE(list.out.find(word), std::string::npos) << word;
     const Outcome info = glint("info builtin:balls,level=2");
     EXPECT_EQ(info.code, 0);
     EXPECT_NE(info.out.find("spheres 91"), std::string::npos);

@@ -95,7 +95,9 @@ TEST(Accumulation, S_ACC_03_OneSampleThatIsNotFiniteIsRejectedAndCounted) {
 TEST(Accumulation, APixelWithoutAnyFiniteSampleIsBlackAndCounted) {
     SceneBuilder b;
     b.scene().environment.color = glm::vec3(std::numeric_limits<float>::infinity());
-    const Rendered r = render(b.finish(), small_camera(), centred(), {kSide, kSide, 3});
+    RenderSettings jittered = centred();
+    jittered.features.set(Feature::aa, true);
+    const Rendered r = render(b.finish(), small_camera(), jittered, {kSide, kSide, 3});
     EXPECT_EQ(r.progress.rays.non_finite, 48u);
     for (const glm::vec3& p : r.image.pixels) EXPECT_EQ(p, glm::vec3(0.0f));
 }

@@ -88,8 +88,8 @@ Comparison compare_balls_medium(FeatureSet set, const std::string& reference_nam
             ++c.off_silhouette;
         }
     }
-    std::cout << reference_name << ": " << c.percent(c.equal) << " % byte-equal, " << c.percent(c.within_one)
-              << " % within 1, " << c.pixels - c.within_one << " further off, " << c.off_silhouette << " of those not at a silhouette\n";
+    std::cout << reference_name << ": " << c.percent(c.equal) << " % byte-equal, " << c.percent(c.within_one) << " % within 1, "
+              << c.pixels - c.within_one << " further off, " << c.off_silhouette << " of those not at a silhouette\n";
     return c;
 }
 
@@ -161,8 +161,9 @@ TEST_F(Reference, DragonFloorAndSkyAgree) {
             floor_within_1 += d <= 1;
         }
     }
-    std::cout << "dragon.png: sky " << sky << " pixels, " << sky_equal << " equal, " << sky_within_2 << " within 2, " << sky_within_8
-              << " within 8; floor " << floor << " pixels, " << floor_equal << " equal, " << floor_within_1 << " within 1\n";
+    std::cout << "dragon.png: sky " << sky << " pixels, " << sky_equal << " equal, " << sky_within_2 << " within 2, "
+              << sky_within_8 << " within 8; floor " << floor << " pixels, " << floor_equal << " equal, " << floor_within_1
+              << " within 1\n";
     EXPECT_GE(static_cast<double>(sky_within_8), 0.999 * static_cast<double>(sky));
     EXPECT_GE(static_cast<double>(floor_equal), 0.995 * static_cast<double>(floor));
 }

@@ -158,6 +158,21 @@ TEST_P(SameBits, OffIsBitEqualToNeverHad) {
     });
 }
 
+// No work that does not show: samples that could only be alike are taken once.
+TEST_P(SameBits, OneSampleWhereNothingIsRandom) {
+    Picture p = picture(1);
+    p.settings.features = FeatureSet::whitted();
+    Progress once, many;
+    const Image expected = render_picture(scene, p, &once);
+    p.spp = 64;
+    EXPECT_EQ(differing_pixels(expected, render_picture(scene, p, &many)), 0u);
+    EXPECT_EQ(once.rays.total(), many.rays.total());
+    EXPECT_TRUE(many.finished);
+    p.settings.features.set(Feature::aa, true);
+    (void)render_picture(scene, p, &many);
+    EXPECT_GE(many.rays.camera, 64 * once.rays.camera);
+}
+
 std::string scene_name(const testing::TestParamInfo<const char*>& info) {
     std::string name(info.param + 8);
     for (char& c : name) {
