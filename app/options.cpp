@@ -157,6 +157,7 @@ private:
         const std::string name = names.starts_with("-o") ? "--output" : shown;
         app_.add_option_function<std::string>(
                 names, [check, name](const std::string& v) { check(std::string_view(name), std::string_view(v)); }, help)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
             ->type_name(value);
     }
     template <class Set>

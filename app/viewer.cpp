@@ -102,9 +102,12 @@ void Viewer::command(Action action) {
 
 void Viewer::take_screenshot() {
     const auto kind = session_.accelerator_in_use();
-    const int spp = renderer_.progress().spp_min;
     Image image;
-    if (!kind || !renderer_.resolve(image)) return fmt::print(stderr, "glint: no screenshot: there is no picture yet\n");
+    int spp = renderer_.resolve_pass(image);
+    // No pass is whole yet, or one tile is far slower than all others: then what is shown.
+    if (spp == 0) spp = renderer_.progress().spp_min;
+    const bool any = !image.pixels.empty() || renderer_.resolve(image);
+    if (!kind || !any) return fmt::print(stderr, "glint: no screenshot: there is no picture yet\n");
     try {
         const auto name = kAcceleratorNames[static_cast<std::size_t>(*kind)];
         const auto path = screenshot_path(pictures_folder(), session_.scene().name, name, spp);

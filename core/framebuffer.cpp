@@ -14,7 +14,7 @@ glm::vec3 mean(const PixelSum& sum, int samples) {
 
 }  // namespace
 
-Framebuffer::Framebuffer(TileRect area) : area_(area) {
+Framebuffer::Framebuffer(TileRect area, bool keep_passes) : area_(area), keep_passes_(keep_passes) {
     for (int y = area.y0; y < area.y1; y += kTileSize) {
         for (int x = area.x0; x < area.x1; x += kTileSize) {
             Tile tile;
@@ -38,6 +38,10 @@ void Framebuffer::copy_out(std::size_t tile, std::uint64_t generation, std::vect
 
 void Framebuffer::write_back(std::size_t tile, std::uint64_t generation, const std::vector<PixelSum>& sums, int samples) {
     Tile& t = tiles_[tile];
+    if (keep_passes_) {
+        t.previous_samples = t.generation == generation ? t.samples : 0;
+        t.previous.swap(t.sums);
+    }
     t.sums = sums;
     t.samples = samples;
     t.generation = generation;
@@ -62,6 +66,25 @@ void Framebuffer::resolve(std::size_t tile, std::uint64_t generation, Image& ima
             image.at(x - area_.x0, y - area_.y0) = sampled ? mean(t.sums[i], t.samples) : t.preview[block];
         }
     }
+}
+
+int Framebuffer::resolve_pass(std::uint64_t generation, Image& image) const {
+    int pass = tiles_.empty() ? 0 : samples(0, generation);
+    for (std::size_t i = 1; i < tiles_.size(); ++i) pass = std::min(pass, samples(i, generation));
+    // Tiles are visited in turn, so none is more than a batch ahead of the slowest, but for a tile that takes as long as
+    // all others together.
+    for (const Tile& t : tiles_) {
+        if (pass == 0 || (t.samples != pass && t.previous_samples != pass)) return 0;
+    }
+    image = {area_.x1 - area_.x0, area_.y1 - area_.y0, std::vector<glm::vec3>(area_.pixels())};
+    for (const Tile& t : tiles_) {
+        const std::vector<PixelSum>& sums = t.samples == pass ? t.sums : t.previous;
+        std::size_t i = 0;
+        for (int y = t.rect.y0; y < t.rect.y1; ++y) {
+            for (int x = t.rect.x0; x < t.rect.x1; ++x) image.at(x - area_.x0, y - area_.y0) = mean(sums[i++], pass);
+        }
+    }
+    return pass;
 }
 
 double Framebuffer::relative_standard_error(std::uint64_t generation) const {

@@ -28,8 +28,9 @@ struct TileRect {
 
 class Framebuffer {
 public:
-    // Covers [x0,x1) x [y0,y1) of the picture.
-    explicit Framebuffer(TileRect area);
+    // Covers [x0,x1) x [y0,y1) of the picture. keep_passes: each tile also remembers its sums before the last batch, so
+    // that resolve_pass() can answer (twice the memory).
+    explicit Framebuffer(TileRect area, bool keep_passes = false);
 
     [[nodiscard]] TileRect area() const { return area_; }
     [[nodiscard]] std::size_t tile_count() const { return tiles_.size(); }
@@ -46,6 +47,9 @@ public:
     // Sets the tile's pixels of an image that covers area(): means, or previews where there are no samples yet; leaves
     // them alone where there is neither.
     void resolve(std::size_t tile, std::uint64_t generation, Image& image) const;
+    // Sets the image to the last pass that every tile has completed, so that each pixel has the same number of samples.
+    // Returns that number; 0, and the image untouched, when there is none.
+    [[nodiscard]] int resolve_pass(std::uint64_t generation, Image& image) const;
     // Root mean square over pixels of the standard error of the mean, divided by the picture's mean; luminance.
     // From the plain sample variance, so it is too large for stratified samplers, never too small on average.
     [[nodiscard]] double relative_standard_error(std::uint64_t generation) const;
@@ -54,11 +58,12 @@ private:
     struct Tile {
         TileRect rect;
         std::uint64_t generation = 0, preview_generation = 0;
-        int samples = 0;
-        std::vector<PixelSum> sums;
+        int samples = 0, previous_samples = 0;
+        std::vector<PixelSum> sums, previous;  // previous: before the last batch
         std::vector<glm::vec3> preview;
     };
     TileRect area_;
+    bool keep_passes_;
     std::vector<Tile> tiles_;
 };
 

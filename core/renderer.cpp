@@ -82,7 +82,7 @@ struct Renderer::State {
         const TileRect area{f.x0, f.y0, f.x1, f.y1};
         const bool fits = framebuffer != nullptr && framebuffer->area().x0 == area.x0 && framebuffer->area().y0 == area.y0 &&
                           framebuffer->area().x1 == area.x1 && framebuffer->area().y1 == area.y1;
-        if (!fits) framebuffer = std::make_shared<Framebuffer>(area);
+        if (!fits) framebuffer = std::make_shared<Framebuffer>(area, preview);
         queue.clear();
         const std::size_t n = framebuffer->tile_count();
         if (preview) {
@@ -242,6 +242,13 @@ bool Renderer::resolve(Image& image) const {
         lock.unlock();
     }
     return s.generation.load() == shown;
+}
+
+int Renderer::resolve_pass(Image& image) const {
+    const State& s = *state_;
+    const std::lock_guard lock(s.mutex);
+    if (s.order == nullptr || s.queue_generation != s.order->generation) return 0;
+    return s.framebuffer->resolve_pass(s.order->generation, image);
 }
 
 void Renderer::wait(double deadline_seconds, const std::atomic<bool>* stop) const {

@@ -52,6 +52,9 @@ public:
     // The mean of the samples so far as linear radiance, at the frame's crop size. Where a pixel has no sample yet, its
     // coarse preview. False, and `image` untouched, while not even the preview covers the picture.
     bool resolve(Image& image) const;
+    // The last pass that covers the whole picture, every pixel with the same number of samples: what a screenshot takes.
+    // Returns that number; 0, and `image` untouched, while there is none. Only with a preview.
+    int resolve_pass(Image& image) const;
     // Root mean square of the pixels' standard errors over the picture's mean, from the plain sample variance: an upper
     // bound for stratified samplers. 0 below two samples a pixel.
     [[nodiscard]] double relative_standard_error() const;

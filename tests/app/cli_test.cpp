@@ -157,6 +157,8 @@ TEST_F(CommandLine, StatsCountWhatWasAsked) {
     EXPECT_EQ(json["stopped_by"], "spp");
     EXPECT_EQ(json["spp_min"], 2);
     EXPECT_EQ(json["threads"], 1);
+    // Said twice, the last one counts.
+    EXPECT_EQ(nlohmann::json::parse(glint(quick + "-o " + path("b.png") + " --stats json --spp 5").out)["spp"], 5);
     EXPECT_EQ(json["non_finite_samples"], 0);
     const Image crop = read_image(path("a.png"));
     EXPECT_EQ(crop.width, 8);

@@ -1,8 +1,10 @@
 // One picture, byte for byte: whatever accelerator, thread count, batch or scale; and toggles that leave no trace.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <thread>
 
 #include "tests/core/render_picture.h"
 
@@ -156,6 +158,32 @@ TEST_P(SameBits, OffIsBitEqualToNeverHad) {
     without(Feature::fuzzy, [](Scene& s) {
         for (auto& m : s.materials) m.roughness = 0.0f;
     });
+}
+
+// What a screenshot takes in the middle of a render: a whole pass, as if it had been asked for.
+TEST_P(SameBits, OfACompletePassInTheMiddleOfARender) {
+    Picture p;
+    p.spp = 1 << 20;
+    p.width = p.height = 160;
+    Renderer renderer(2, true);
+    Frame frame;
+    frame.scene = scene;
+    frame.accelerator = build_accelerator(AcceleratorKind::bvh, scene->geometry);
+    frame.camera = scene->cameras.front();
+    frame.settings = p.settings;
+    frame.width = p.width;
+    frame.height = p.height;
+    frame.spp = p.spp;
+    renderer.restart(frame);
+    Image image;
+    int pass = 0;
+    for (int i = 0; i < 10000 && pass < 3; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        pass = renderer.resolve_pass(image);
+    }
+    ASSERT_GE(pass, 3);
+    p.spp = pass;
+    EXPECT_EQ(differing_pixels(render_picture(scene, p), image), 0u) << pass;
 }
 
 // No work that does not show: samples that could only be alike are taken once.
