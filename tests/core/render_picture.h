@@ -16,8 +16,7 @@ struct Picture {
     RenderSettings settings;
 };
 
-inline Image render_picture(const std::shared_ptr<const Scene>& scene, const Picture& p, Progress* progress = nullptr) {
-    Renderer renderer(p.threads, false);
+inline Frame frame_of(const std::shared_ptr<const Scene>& scene, const Picture& p) {
     Frame frame;
     frame.scene = scene;
     frame.accelerator = build_accelerator(p.accelerator, scene->geometry);
@@ -26,7 +25,12 @@ inline Image render_picture(const std::shared_ptr<const Scene>& scene, const Pic
     frame.width = p.width;
     frame.height = p.height;
     frame.spp = p.spp;
-    renderer.restart(frame);
+    return frame;
+}
+
+inline Image render_picture(const std::shared_ptr<const Scene>& scene, const Picture& p, Progress* progress = nullptr) {
+    Renderer renderer(p.threads, false);
+    renderer.restart(frame_of(scene, p));
     renderer.wait(1e9, nullptr);
     Image image;
     EXPECT_TRUE(renderer.resolve(image));

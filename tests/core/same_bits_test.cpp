@@ -64,14 +64,7 @@ TEST_P(SameBits, OfACropAndTheWholePicture) {
     p.spp = 2;
     const Image whole = render_picture(scene, p);
     Renderer renderer(2, false);
-    Frame frame;
-    frame.scene = scene;
-    frame.accelerator = build_accelerator(AcceleratorKind::bvh, scene->geometry);
-    frame.camera = scene->cameras.front();
-    frame.settings = p.settings;
-    frame.width = p.width;
-    frame.height = p.height;
-    frame.spp = p.spp;
+    Frame frame = frame_of(scene, p);
     frame.x0 = 19, frame.x1 = 50, frame.y0 = 7, frame.y1 = 33;
     renderer.restart(frame);
     renderer.wait(1e9, nullptr);
@@ -89,14 +82,7 @@ TEST_P(SameBits, AfterPausesAndRestarts) {
     Picture p = picture(4);
     const Image expected = render_picture(scene, p);
     Renderer renderer(2, true);
-    Frame frame;
-    frame.scene = scene;
-    frame.accelerator = build_accelerator(AcceleratorKind::bvh, scene->geometry);
-    frame.camera = scene->cameras.front();
-    frame.settings = p.settings;
-    frame.width = p.width;
-    frame.height = p.height;
-    frame.spp = p.spp;
+    Frame frame = frame_of(scene, p);
     Frame other = frame;
     other.camera.eye += glm::vec3(0.1f, 0.2f, 0.05f);
     for (int i = 0; i < 20; ++i) {
@@ -166,14 +152,7 @@ TEST_P(SameBits, OfACompletePassInTheMiddleOfARender) {
     p.spp = 1 << 20;
     p.width = p.height = 160;
     Renderer renderer(2, true);
-    Frame frame;
-    frame.scene = scene;
-    frame.accelerator = build_accelerator(AcceleratorKind::bvh, scene->geometry);
-    frame.camera = scene->cameras.front();
-    frame.settings = p.settings;
-    frame.width = p.width;
-    frame.height = p.height;
-    frame.spp = p.spp;
+    Frame frame = frame_of(scene, p);
     renderer.restart(frame);
     Image image;
     int pass = 0;
