@@ -23,6 +23,7 @@ struct PixelSum {
 
 struct TileRect {
     int x0, y0, x1, y1;  // in the whole picture, upper bounds excluded
+    bool operator==(const TileRect&) const = default;
     [[nodiscard]] std::size_t pixels() const { return static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0); }
 };
 

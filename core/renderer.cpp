@@ -80,9 +80,7 @@ struct Renderer::State {
     void deal() {
         const Frame& f = order->frame;
         const TileRect area{f.x0, f.y0, f.x1, f.y1};
-        const bool fits = framebuffer != nullptr && framebuffer->area().x0 == area.x0 && framebuffer->area().y0 == area.y0 &&
-                          framebuffer->area().x1 == area.x1 && framebuffer->area().y1 == area.y1;
-        if (!fits) framebuffer = std::make_shared<Framebuffer>(area, preview);
+        if (framebuffer == nullptr || framebuffer->area() != area) framebuffer = std::make_shared<Framebuffer>(area, preview);
         queue.clear();
         const std::size_t n = framebuffer->tile_count();
         if (preview) {
@@ -95,8 +93,6 @@ struct Renderer::State {
     }
 
     void work_loop();
-    void render(const Order& o, const Task& task, std::vector<PixelSum>& sums, std::vector<glm::vec3>& blocks,
-                Workspace& workspace);
 };
 
 void Renderer::State::work_loop() {

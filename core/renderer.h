@@ -45,7 +45,8 @@ public:
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    // Replaces the frame. O(1); waits for no worker. Returns the new generation.
+    // Replaces the frame: plans it on the caller's thread (a walk over the lights, and over balls and boxes where there is
+    // glass), then swaps it in. Waits for no worker, touches no pixel. Returns the new generation.
     std::uint64_t restart(Frame frame);
     void set_paused(bool paused);
     [[nodiscard]] Progress progress() const;

@@ -1,6 +1,9 @@
 #include "app/keys.h"
 
+#include <fstream>
+#include <iterator>
 #include <map>
+#include <regex>
 #include <set>
 #include <utility>
 
@@ -29,6 +32,22 @@ TEST(Keys, NoKeyIsBoundTwice) {
     std::set<std::pair<int, bool>> keys;
     for (const KeyBinding& row : key_table())
         EXPECT_TRUE(keys.insert({row.key, row.rule == KeyRule::control}).second) << row.label;
+}
+
+// The README's table names every key of the program's (the four arrows as one word).
+TEST(Keys, TheReadmeNamesEveryKey) {
+    std::ifstream in(GLINT_TESTS "/../README.md");
+    const std::string text((std::istreambuf_iterator<char>(in)), {});
+    const std::size_t begin = text.find("## Keys"), end = text.find("\n## ", begin + 1);
+    ASSERT_NE(end, std::string::npos);
+    const std::string keys = text.substr(begin, end - begin);
+    const std::set<std::string_view> arrows{"Left", "Right", "Up", "Down"};
+    for (const KeyBinding& row : key_table()) {
+        const std::string word(arrows.count(row.label) > 0 ? "arrows" : row.label);
+        EXPECT_TRUE(
+            std::regex_search(keys, std::regex("[ |(,;]" + std::regex_replace(word, std::regex("\\+"), "\\+") + "[ |,;]")))
+            << word;
+    }
 }
 
 TEST(Keys, EveryActionHasOneHelpTextAndALabel) {

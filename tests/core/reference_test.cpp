@@ -68,6 +68,16 @@ FeatureSet features(std::initializer_list<Feature> list) {
 
 Image8 display(const Image& image) { return to_display(image, {0.0f, Transfer::linear}); }
 
+// As the course renders: one centred ray, three bounces.
+Image8 whitted_picture(const std::shared_ptr<const Scene>& scene) {
+    Picture p;
+    p.width = scene->width;
+    p.height = scene->height;
+    p.settings.features = FeatureSet::whitted();
+    p.settings.depth = 3;
+    return display(render_picture(scene, p));
+}
+
 Comparison compare_balls_medium(FeatureSet set, const std::string& reference_name) {
     const auto scene = load("balls_medium.p3f", false);
     const Image reference = read_image(kReferences + reference_name);
@@ -118,12 +128,7 @@ TEST_F(Reference, BallsMediumWithHighlightsEqualsTheCoursesPicture) {
 TEST_F(Reference, MountLowIsByteEqualWhereverTheBallsAreNotSeenDirectly) {
     const auto scene = load("mount_low.p3f", false);
     const Image reference = read_image(kReferences + "mount_low.png");
-    Picture p;
-    p.width = scene->width;
-    p.height = scene->height;
-    p.settings.features = FeatureSet::whitted();
-    p.settings.depth = 3;
-    const Image8 ours = display(render_picture(scene, p));
+    const Image8 ours = whitted_picture(scene);
     const auto ids = visible_ids(*scene);
     std::size_t outside = 0, different = 0;
     for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -140,12 +145,7 @@ TEST_F(Reference, DragonFloorAndSkyAgree) {
     const auto scene = load("dragon.p3f", true);
     ASSERT_EQ(scene->environment.kind, Environment::Kind::cube);
     const Image reference = read_image(kReferences + "dragon.png");
-    Picture p;
-    p.width = scene->width;
-    p.height = scene->height;
-    p.settings.features = FeatureSet::whitted();
-    p.settings.depth = 3;
-    const Image8 ours = display(render_picture(scene, p));
+    const Image8 ours = whitted_picture(scene);
     const auto ids = visible_ids(*scene);
     std::size_t sky = 0, sky_equal = 0, sky_within_2 = 0, sky_within_8 = 0, floor = 0, floor_equal = 0, floor_within_1 = 0;
     for (std::size_t i = 0; i < ids.size(); ++i) {
