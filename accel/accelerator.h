@@ -2,6 +2,7 @@
 // Knows only geometry. A type is an accelerator when it offers, const and noexcept:
 //   Hit  closest_hit(const Ray&)  the hit of smallest t, the lower id at equal t; not found() = miss
 //   bool occluded(const Ray&)     whether closest_hit() would find anything
+//   void closest_hits(const RayBatch&, HitBatch&), occluded(const RayBatch&, OccludedBatch&)  the same for many rays
 #pragma once
 
 #include <array>
@@ -18,11 +19,15 @@
 namespace glint {
 
 template <class T>
-concept Accelerator = requires(const T& a, const Ray& ray) {
+concept Accelerator = requires(const T& a, const Ray& ray, const RayBatch& rays, HitBatch& hits, OccludedBatch& occluded) {
     { a.closest_hit(ray) }
     noexcept->std::same_as<Hit>;
     { a.occluded(ray) }
     noexcept->std::same_as<bool>;
+    { a.closest_hits(rays, hits) }
+    noexcept;
+    { a.occluded(rays, occluded) }
+    noexcept;
     { a.memory_bytes() } -> std::convertible_to<std::size_t>;
 };
 static_assert(Accelerator<BruteForce> && Accelerator<UniformGrid> && Accelerator<Bvh>);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "accel/primitive.h"
+#include "accel/ray_batch.h"
 
 namespace glint {
 
@@ -37,6 +38,8 @@ public:
 
     [[nodiscard]] Hit closest_hit(const Ray& ray) const noexcept;
     [[nodiscard]] bool occluded(const Ray& ray) const noexcept;
+    void closest_hits(const RayBatch& rays, HitBatch& hits) const noexcept { closest_hits_one_by_one(*this, rays, hits); }
+    void occluded(const RayBatch& rays, OccludedBatch& result) const noexcept { occluded_one_by_one(*this, rays, result); }
     [[nodiscard]] std::size_t memory_bytes() const;
     [[nodiscard]] const BvhTree& tree() const { return tree_; }
 

@@ -135,6 +135,8 @@ public:
         shadow_rays.push_back(ray);
         return inner_.occluded(ray);
     }
+    void closest_hits(const RayBatch& batch, HitBatch& hits) const noexcept { closest_hits_one_by_one(*this, batch, hits); }
+    void occluded(const RayBatch& batch, OccludedBatch& result) const noexcept { occluded_one_by_one(*this, batch, result); }
     [[nodiscard]] std::size_t memory_bytes() const { return inner_.memory_bytes(); }
 
     mutable std::vector<Ray> rays, shadow_rays;
