@@ -1,7 +1,7 @@
 // Ray against one primitive: the only arithmetic that decides a hit. Every accelerator ends here, so all agree to the bit.
 // Knows no accelerator. Invariant: a reported t lies in (0, t_max] and inside the ray's interval through the primitive's
 // padded bounds (slab_interval below), so that a box test by the same arithmetic can never cull a hit.
-// Triangles are sheared in float, watertight, and decided like all other primitives in double.
+// Triangles are tested in float, watertight, by operations that every instruction set rounds alike; the others in double.
 #pragma once
 
 #include "accel/geometry.h"
@@ -17,12 +17,16 @@ struct PreparedRay {
     glm::vec3 reciprocal, near_offset, far_offset;
     // Watertight triangles: the axes, permuted so that |direction[kz]| is largest, and the shear that maps the ray to +z.
     int kx, ky, kz;
-    float shear_x, shear_y;
+    float shear_x, shear_y, inverse_z;
     bool usable;  // false for a non-finite or (nearly) zero direction: such a ray hits nothing
 
     // magnitude: the largest absolute coordinate of the geometry the ray will meet.
     PreparedRay(const Ray& ray, float magnitude) noexcept;
 };
+
+// How far a computed hit may stray from the exact ray, in units of origin and geometry: the rounding errors of all tests,
+// summed in accel/README.md.
+constexpr float kPadding = 32.0f * 0x1p-24f;
 
 struct Interval {
     float near, far;
@@ -42,17 +46,16 @@ inline PreparedRay::PreparedRay(const Ray& ray, float magnitude) noexcept
     usable = std::isfinite(sum.x + sum.y + sum.z) && t_max > 0.0f && largest >= 0x1p-86f && size <= 0x1p87f * largest;
     if (!usable) {
         reciprocal = near_offset = far_offset = glm::vec3(0.0f);
-        shear_x = shear_y = 0.0f;
+        shear_x = shear_y = inverse_z = 0.0f;
         return;
     }
-    shear_x = direction[kx] / direction[kz];
-    shear_y = direction[ky] / direction[kz];
+    inverse_z = 1.0f / direction[kz];
+    shear_x = direction[kx] * inverse_z;
+    shear_y = direction[ky] * inverse_z;
     // A zero component would give 0 * inf = NaN. 2^-40 of the largest moves the ray by less than 2^-40 of the scene
     // inside its bounds, far below the padding.
     const float smallest = largest * 0x1p-40f;
-    // The computed hit strays from the exact ray by a few rounding errors of numbers as large as origin and geometry:
-    // vertex - origin (1), shear (2), edge functions (2), slab arithmetic (3) units of 2^-24; 16 bounds their sum.
-    const float padding = 16.0f * 0x1p-24f * size;
+    const float padding = kPadding * size;
     for (int i = 0; i < 3; ++i) {
         const float d = a[i] >= smallest ? direction[i] : std::copysign(smallest, direction[i]);
         reciprocal[i] = 1.0f / d;
@@ -94,9 +97,62 @@ struct TriangleHit {
     float t, u, v;
 };
 
+// a*b - c*d to 1.5 units in the last place, so its sign is exact (Kahan's algorithm; Jeannerod, Louvet & Muller 2013, "Further
+// analysis of Kahan's algorithm for the accurate computation of 2x2 determinants"). Without a fused instruction libm emulates it.
+inline float difference_of_products(float a, float b, float c, float d) noexcept {
+    const float cd = c * d;
+    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
+
+// Edge functions from here to the reciprocal are as exact as said above, and what is derived from them is a normal float.
+constexpr float kLeastEdge = 0x1p-100f, kLargestDeterminant = 0x1p100f;
+
+// A triangle relative to the ray: x and y sheared so that the ray runs along z through (0, 0).
+struct ShearedTriangle {
+    float ax, ay, az, bx, by, bz, cx, cy, cz;
+};
+
+// Writes t and weights from edge functions of one sign; false where they are too small or large to be trusted.
+inline bool weigh(const PreparedRay& ray, const ShearedTriangle& s, TriangleHit& hit) noexcept {
+    const float u = difference_of_products(s.cx, s.by, s.cy, s.bx), v = difference_of_products(s.ax, s.cy, s.ay, s.cx),
+                w = difference_of_products(s.bx, s.ay, s.by, s.ax);
+    const float lowest = std::min(std::min(u, v), w), highest = std::max(std::max(u, v), w);
+    const float det = (u + v) + w;
+    if (!(std::max(lowest, -highest) >= kLeastEdge && std::abs(det) <= kLargestDeterminant)) return false;
+    const float scale = 1.0f / det;
+    hit.u = v * scale;
+    hit.v = w * scale;
+    hit.t = (((u * scale) * s.az + hit.u * s.bz) + hit.v * s.cz) * ray.inverse_z;
+    return true;
+}
+
+// The rare cases that float cannot decide as it stands: a ray through an edge or a vertex, a tiny triangle, a huge one.
+inline bool intersect_uncertain(const PreparedRay& ray, ShearedTriangle s, float t_limit, TriangleHit& hit) noexcept {
+    // In double the products of two floats are exact.
+    const EdgeFunctions<double> e{static_cast<double>(s.cx) * s.by - static_cast<double>(s.cy) * s.bx,
+                                  static_cast<double>(s.ax) * s.cy - static_cast<double>(s.ay) * s.cx,
+                                  static_cast<double>(s.bx) * s.ay - static_cast<double>(s.by) * s.ax};
+    if (e.mixed_signs()) return false;
+    const double det = e.u + e.v + e.w;
+    if (!(std::abs(det) > 0.0)) return false;  // the ray lies in the plane, or NaN
+    // At the size of 1 the arithmetic is the usual one, so that a scene scaled by a power of two keeps its bits.
+    float largest = 0.0f;
+    for (const float x : {s.ax, s.ay, s.bx, s.by, s.cx, s.cy}) largest = std::max(largest, std::abs(x));
+    const int exponent = std::ilogb(largest);
+    for (float* x : {&s.ax, &s.ay, &s.bx, &s.by, &s.cx, &s.cy}) *x = std::ldexp(*x, -exponent);
+    if (!weigh(ray, s, hit)) {
+        hit.t = static_cast<float>((e.u * s.az + e.v * s.bz + e.w * s.cz) / (det * ray.direction[ray.kz]));
+        hit.u = static_cast<float>(e.v / det);
+        hit.v = static_cast<float>(e.w / det);
+    }
+    return reportable(hit.t, t_limit);
+}
+
 // Watertight: a ray that meets an edge or vertex shared by triangles hits at least one of them, because the sign of an
 // edge function depends on the edge alone (Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection").
 // Both faces are hit; a ray in the triangle's plane misses. Returns false for a miss.
+// t is a mean of the vertices' distances with weights good to a few roundings, however thin the triangle: so it lies in the
+// interval of the triangle's own padded bounds (accel/README.md has the sum of the errors).
 inline bool intersect_triangle(const PreparedRay& ray, const glm::vec3& v0, const glm::vec3& v1, const glm::vec3& v2,
                                float t_limit, TriangleHit& hit) noexcept {
     // Coordinates are picked from memory by axis; permuting whole vectors would cost more than the test.
@@ -105,30 +161,13 @@ inline bool intersect_triangle(const PreparedRay& ray, const glm::vec3& v0, cons
     const float ax = (v0[ray.kx] - ox) - ray.shear_x * az, ay = (v0[ray.ky] - oy) - ray.shear_y * az;
     const float bx = (v1[ray.kx] - ox) - ray.shear_x * bz, by = (v1[ray.ky] - oy) - ray.shear_y * bz;
     const float cx = (v2[ray.kx] - ox) - ray.shear_x * cz, cy = (v2[ray.ky] - oy) - ray.shear_y * cz;
-    // Most misses are certain in float: rounding is monotone, so a difference of products that is not 0 has the exact sign.
+    // Most misses are certain at once: rounding is monotone, so a difference of rounded products that is not 0 has the exact
+    // sign.
     const EdgeFunctions<float> rough{cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
     if (rough.mixed_signs()) return false;
-    // In float two products may cancel to 0 though the exact difference is not 0, and products of three lengths leave its
-    // range beyond 1e12 or below 1e-13; in double the products of two floats are exact and none of that happens.
-    const EdgeFunctions<double> e{static_cast<double>(cx) * by - static_cast<double>(cy) * bx,
-                                  static_cast<double>(ax) * cy - static_cast<double>(ay) * cx,
-                                  static_cast<double>(bx) * ay - static_cast<double>(by) * ax};
-    if (e.mixed_signs()) return false;
-    const double det = e.u + e.v + e.w;
-    if (!(std::abs(det) > 0.0)) return false;  // the ray lies in the plane, or NaN
-    auto t = static_cast<float>((e.u * az + e.v * bz + e.w * cz) / (det * ray.direction[ray.kz]));
-    // A needle seen edge-on leaves t badly conditioned. It cannot lie outside the triangle's own bounds, so it is
-    // brought back there; this is also what makes culling by boxes exact.
-    Aabb box;
-    box.grow(v0);
-    box.grow(v1);
-    box.grow(v2);
-    const Interval inside = slab_interval(ray, box);
-    if (inside.empty()) return false;
-    t = t < inside.near ? inside.near : t > inside.far ? inside.far : t;
-    if (!reportable(t, t_limit)) return false;
-    hit = {t, static_cast<float>(e.v / det), static_cast<float>(e.w / det)};
-    return true;
+    const ShearedTriangle s{ax, ay, az, bx, by, bz, cx, cy, cz};
+    if (!weigh(ray, s, hit)) return intersect_uncertain(ray, s, t_limit, hit);
+    return reportable(hit.t, t_limit);
 }
 
 // The first root of a pair that is reportable once rounded to float; 0 when neither is.

@@ -6,10 +6,10 @@
 namespace glint {
 namespace {
 
-// Rays from farther than this many times the geometry's largest coordinate see the grid under less than a degree.
-constexpr double kFarOrigin = 64.0;
+// Rays from farther than this many times the geometry's largest coordinate see the grid under less than two degrees.
+constexpr double kFarOrigin = 32.0;
 // Twice the padding that PreparedRay gives a ray from there.
-constexpr double kCellPadding = 2.0 * 16.0 * 0x1p-24 * (kFarOrigin + 1.0);
+constexpr double kCellPadding = 2.0 * static_cast<double>(kPadding) * (kFarOrigin + 1.0);
 // About the course's density (m = 2: eight cells a primitive), halved until the references fit.
 constexpr double kCellsPerPrimitive = 8.0;
 constexpr std::size_t kMaxReferencesPerPrimitive = 16;
