@@ -1,5 +1,8 @@
+#include <algorithm>
+#include <deque>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -9,62 +12,80 @@
 #include "tests/accel/hit_report.h"
 
 namespace glint {
+
+void PrintTo(const AdversarialScene& scene, std::ostream* out) { *out << scene.name; }
+
 namespace {
 
-struct Case {
-    AdversarialScene scene;
-    AcceleratorKind kind;
-};
-
-std::string name_of(const Case& c) {
-    return std::string(c.scene.name) + "_" + std::string(kAcceleratorNames[static_cast<std::size_t>(c.kind)]);
-}
-void PrintTo(const Case& c, std::ostream* out) { *out << name_of(c); }
-
-std::vector<Case> all_cases() {
-    std::vector<Case> cases;
-    for (const AdversarialScene& scene : kAdversarialScenes) {
-        for (const auto kind : {AcceleratorKind::none, AcceleratorKind::grid, AcceleratorKind::bvh})
-            cases.push_back({scene, kind});
-    }
-    return cases;
-}
-
-// Compares with brute force ray by ray; the first mismatch is kept for the report.
+// Every structure in every instruction set of this machine against brute force, by single rays and by batches of each order.
+// The first mismatch is kept for the report.
 class Comparison {
 public:
-    explicit Comparison(const Case& c)
-        : geometry_(std::make_shared<const Geometry>(c.scene.build())),
-          brute_force_(geometry_),
-          accelerator_(build_accelerator(c.kind, geometry_)) {}
-
-    // Returns the truth.
-    Hit compare(const Ray& ray) {
-        const Hit expected = brute_force_.closest_hit(ray);
-        const Hit actual = kind_of(*accelerator_) == AcceleratorKind::none ? expected : closest_hit(*accelerator_, ray);
-        const bool shadow = occluded(*accelerator_, ray);
-        const bool in_range = !expected.found() || (expected.t > 0.0f && expected.t <= ray.t_max && expected.t < kInfinity);
-        if (!same(expected, actual) || shadow != expected.found() || !in_range) {
-            if (mismatches_++ == 0) {
-                first_ = text(ray) + "\n  brute force: " + text(expected) + "\n  accelerator: " + text(actual) +
-                         "\n  occluded: " + (shadow ? "yes" : "no");
-            }
+    explicit Comparison(const AdversarialScene& scene)
+        : geometry_(std::make_shared<const Geometry>(scene.build())), brute_force_(geometry_), grid_(geometry_) {
+        for (const Isa isa : {Isa::baseline, Isa::avx2, Isa::avx512}) {
+            if (supported(isa)) trees_.emplace_back(geometry_, serial_for, isa);
         }
-        ++rays_;
-        hits_ += expected.found() ? 1 : 0;
-        return expected;
+    }
+
+    // At most kRayBatch rays; truth()[i] afterwards belongs to rays[i].
+    void compare(const std::vector<Ray>& rays) {
+        truth_.clear();
+        for (const Ray& ray : rays) {
+            truth_.push_back(brute_force_.closest_hit(ray));
+            const Hit& h = truth_.back();
+            hits_ += h.found() ? 1 : 0;
+            check(!h.found() || (h.t > 0.0f && h.t <= ray.t_max && h.t < kInfinity), ray, h, h, "range of t");
+        }
+        rays_ += rays.size();
+        compare_with(grid_, "grid", rays);
+        for (std::size_t i = 0; i < trees_.size(); ++i) compare_with(trees_[i], kIsaNames[i], rays);
     }
 
     [[nodiscard]] const Geometry& geometry() const { return *geometry_; }
+    [[nodiscard]] const std::vector<Hit>& truth() const { return truth_; }
     [[nodiscard]] std::size_t rays() const { return rays_; }
     [[nodiscard]] std::size_t hits() const { return hits_; }
     [[nodiscard]] std::size_t mismatches() const { return mismatches_; }
     [[nodiscard]] const std::string& first() const { return first_; }
 
 private:
+    template <class A>
+    void compare_with(const A& accelerator, std::string_view name, const std::vector<Ray>& rays) {
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const Hit hit = accelerator.closest_hit(rays[i]);
+            check(same(truth_[i], hit), rays[i], truth_[i], hit, name);
+            check(accelerator.occluded(rays[i]) == truth_[i].found(), rays[i], truth_[i], hit, "occluded by", name);
+        }
+        for (const RayOrder order : {RayOrder::common_origin, RayOrder::coherent, RayOrder::divergent}) {
+            batch_.clear(order);
+            for (const Ray& ray : rays) batch_.push(ray);
+            accelerator.closest_hits(batch_, hit_batch_);
+            accelerator.occluded(batch_, occluded_);
+            static constexpr std::string_view kOrders[]{"common origin", "coherent", "divergent"};
+            const std::string_view order_name = kOrders[static_cast<std::size_t>(order)];
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                const Hit hit = hit_batch_[static_cast<int>(i)];
+                check(same(truth_[i], hit), rays[i], truth_[i], hit, name, order_name);
+                check(occluded_[i] == truth_[i].found(), rays[i], truth_[i], hit, name, "occluded, ", order_name);
+            }
+        }
+    }
+    template <class... Words>
+    void check(bool fine, const Ray& ray, const Hit& expected, const Hit& actual, const Words&... words) {
+        if (fine || mismatches_++ > 0) return;
+        first_ = text(ray) + "\n  brute force: " + text(expected) + "\n  other:       " + text(actual) + "\n ";
+        ((first_ += " " + std::string(words)), ...);
+    }
+
     std::shared_ptr<const Geometry> geometry_;
     BruteForce brute_force_;
-    std::shared_ptr<const AnyAccelerator> accelerator_;
+    UniformGrid grid_;
+    std::deque<Bvh> trees_;
+    std::vector<Hit> truth_;
+    RayBatch batch_;
+    HitBatch hit_batch_;
+    OccludedBatch occluded_{};
     std::size_t rays_ = 0, hits_ = 0, mismatches_ = 0;
     std::string first_;
 };
@@ -81,51 +102,91 @@ std::vector<glm::dvec3> corners_of_cells(const Geometry& geometry) {
     return corners;
 }
 
-class Adversarial : public testing::TestWithParam<Case> {};
+class Adversarial : public testing::TestWithParam<AdversarialScene> {
+protected:
+    void expect_no_mismatch() const {
+        EXPECT_EQ(comparison.mismatches(), 0u) << "of " << comparison.rays() << " rays; first: " << comparison.first();
+    }
+    Comparison comparison{GetParam()};
+};
 
-// S-BVH-06, S-GRD-02..05, S-SHD-04, S-BOX-02, S-PLN-03: the same id and the same bits of t, u and v from every accelerator,
+// S-BVH-06, S-GRD-02..05, S-SHD-04, S-BOX-02, S-PLN-03: the same id and the same bits of t, u and v from every structure,
 // and occluded() exactly where there is a hit.
 TEST_P(Adversarial, SameHitAsBruteForce) {
-    const Case c = GetParam();
-    Comparison comparison(c);
     const std::vector<glm::dvec3> corners = corners_of_cells(comparison.geometry());
-    AdversarialRays rays(comparison.geometry(), corners, 1);
-    for (std::size_t i = 0; i < c.scene.rays; ++i) {
-        Ray ray = rays.next();
-        const Hit hit = comparison.compare(ray);
+    AdversarialRays source(comparison.geometry(), corners, 1);
+    std::vector<Ray> rays, bounded, too_short;
+    for (std::size_t done = 0; done < GetParam().rays; done += rays.size()) {
+        rays.resize(std::min<std::size_t>(kRayBatch - done % 7, GetParam().rays - done));
+        for (Ray& ray : rays) ray = source.next();
+        comparison.compare(rays);
         // A bound exactly at the hit keeps it; one float below, it must go.
-        if (hit.found() && i % 8 == 0) {
-            ray.t_max = hit.t;
-            EXPECT_EQ(comparison.compare(ray).primitive, hit.primitive) << text(ray);
-            ray.t_max = std::nextafter(hit.t, 0.0f);
-            EXPECT_FALSE(comparison.compare(ray).found()) << text(ray);
+        bounded.clear();
+        too_short.clear();
+        std::vector<PrimitiveId> ids;
+        for (std::size_t i = 0; i < rays.size(); i += 8) {
+            const Hit hit = comparison.truth()[i];
+            if (!hit.found()) continue;
+            bounded.push_back({rays[i].origin, rays[i].direction, hit.t});
+            too_short.push_back({rays[i].origin, rays[i].direction, std::nextafter(hit.t, 0.0f)});
+            ids.push_back(hit.primitive);
         }
+        comparison.compare(bounded);
+        for (std::size_t i = 0; i < ids.size(); ++i) EXPECT_EQ(comparison.truth()[i].primitive, ids[i]) << text(bounded[i]);
+        comparison.compare(too_short);
+        for (std::size_t i = 0; i < ids.size(); ++i) EXPECT_FALSE(comparison.truth()[i].found()) << text(too_short[i]);
     }
-    EXPECT_EQ(comparison.mismatches(), 0u) << "of " << comparison.rays() << " rays; first: " << comparison.first();
-    EXPECT_GE(comparison.hits(), c.scene.name == "empty" ? 0 : comparison.rays() / 10) << "the rays test too little";
+    expect_no_mismatch();
+    EXPECT_GE(comparison.hits(), GetParam().name == "empty" ? 0 : comparison.rays() / 10) << "the rays test too little";
 }
 
 // Directions from 1e-45 to 1e38 long, origins up to 1e30, bounds down to the smallest float: reciprocals and products
 // overflow or vanish, and the accelerators must still agree.
 TEST_P(Adversarial, SameHitForExtremeRays) {
-    const Case c = GetParam();
-    Comparison comparison(c);
-    AdversarialRays rays(comparison.geometry(), {}, 2);
+    AdversarialRays source(comparison.geometry(), {}, 2);
     Random random(3);
-    for (std::size_t i = 0; i < c.scene.rays / 4; ++i) {
-        Ray ray = rays.next();
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < GetParam().rays / 4; ++i) {
+        Ray ray = source.next();
         ray.t_max = kInfinity;
         ray.direction *= random.power_of_ten(-44.0f, 37.0f);
         if (i % 3 == 1) ray.direction[static_cast<int>(random.below(3))] = random.power_of_ten(-44.0f, -30.0f);
         if (i % 5 == 1) ray.origin[static_cast<int>(random.below(3))] *= random.power_of_ten(0.0f, 12.0f);
         if (i % 7 == 1) ray.t_max = random.power_of_ten(-44.5f, 38.0f);
-        comparison.compare(ray);
+        rays.push_back(ray);
+        if (rays.size() == kRayBatch) comparison.compare(rays), rays.clear();
     }
-    EXPECT_EQ(comparison.mismatches(), 0u) << "of " << comparison.rays() << " rays; first: " << comparison.first();
+    comparison.compare(rays);
+    expect_no_mismatch();
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Adversarial, testing::ValuesIn(all_cases()),
-                         [](const testing::TestParamInfo<Case>& c) { return name_of(c.param); });
+// Bundles as a camera, a lens or a light makes them: neighbours aim close by, from one point or from a small patch, at an edge,
+// a vertex or past everything, and some rays have a bound.
+TEST_P(Adversarial, SameHitForBundles) {
+    AdversarialRays source(comparison.geometry(), {}, 4);
+    Random random(5);
+    std::vector<Ray> rays;
+    for (std::size_t done = 0; done < GetParam().rays; done += rays.size()) {
+        const Ray axis = source.next();
+        const float length = glm::length(axis.direction);
+        const float width = random.power_of_ten(-6.0f, -0.3f) * length;
+        const float patch = random.below(2) == 0 ? 0.0f : random.power_of_ten(-6.0f, -1.0f) * glm::length(axis.origin);
+        const bool bounded = random.below(3) == 0;
+        rays.resize(std::min<std::size_t>(1 + random.below(kRayBatch), GetParam().rays - done));
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            // Sixteen by sixteen, some of them exactly along the axis.
+            const glm::vec3 jitter = i % 16 == 3 ? glm::vec3(0.0f) : width * random.in_cube(-1.0f, 1.0f);
+            rays[i] = {axis.origin + patch * random.in_cube(-1.0f, 1.0f), axis.direction + jitter, kInfinity};
+            if (patch == 0.0f) rays[i].origin = axis.origin;
+            if (bounded) rays[i].t_max = axis.t_max < kInfinity ? axis.t_max : random.power_of_ten(-3.0f, 3.0f);
+        }
+        comparison.compare(rays);
+    }
+    expect_no_mismatch();
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Adversarial, testing::ValuesIn(kAdversarialScenes),
+                         [](const testing::TestParamInfo<AdversarialScene>& s) { return std::string(s.param.name); });
 
 }  // namespace
 }  // namespace glint

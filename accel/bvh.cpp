@@ -1,0 +1,80 @@
+#include "accel/bvh.h"
+
+#include <utility>
+
+namespace glint {
+
+const BvhKernels& bvh_kernels(Isa isa) {
+    switch (isa) {
+        case Isa::avx512: return isa_avx512::kernels;
+        case Isa::avx2: return isa_avx2::kernels;
+        case Isa::baseline: break;
+    }
+    return isa_baseline::kernels;
+}
+
+void intersect_alone(const Ray& ray, float magnitude, const Geometry& geometry, PrimitiveId id, Hit& best) noexcept {
+    intersect(PreparedRay(ray, magnitude), geometry, id, best);
+}
+
+BvhView BvhTree::view(const Geometry& geometry) const {
+    BvhView view;
+    if (units.empty()) return view;
+    view.units = units.front().bytes;
+    view.geometry = &geometry;
+    for (int i = 0; i < 3; ++i) {
+        view.lo[i] = bounds.lo[i];
+        view.hi[i] = bounds.hi[i];
+    }
+    view.magnitude = bounds.magnitude();
+    return view;
+}
+
+Bvh::Bvh(std::shared_ptr<const Geometry> geometry, const ParallelFor& parallel_for, Isa isa)
+    : geometry_(std::move(geometry)),
+      tree_(build_bvh(*geometry_, parallel_for)),
+      view_(tree_.view(*geometry_)),
+      kernels_(&bvh_kernels(isa)) {}
+
+Hit Bvh::closest_hit(const Ray& ray) const noexcept {
+    Hit best;
+    best.t = ray.t_max;
+    if (!geometry_->planes.empty()) best = begin_query(PreparedRay(ray, view_.magnitude), *geometry_);
+    if (view_.units != nullptr) kernels_->closest(view_, ray, best);
+    return best;
+}
+
+bool Bvh::occluded(const Ray& ray) const noexcept {
+    if (!geometry_->planes.empty() && begin_query(PreparedRay(ray, view_.magnitude), *geometry_).found()) return true;
+    return view_.units != nullptr && kernels_->occluded(view_, ray);
+}
+
+void Bvh::closest_hits(const RayBatch& rays, HitBatch& hits) const noexcept {
+    const bool planes = !geometry_->planes.empty();
+    for (int i = 0; i < rays.count; ++i) {
+        Hit best;
+        best.t = rays.t_max[i];
+        if (planes) best = begin_query(PreparedRay(rays[i], view_.magnitude), *geometry_);
+        hits.set(i, best);
+    }
+    if (view_.units != nullptr) kernels_->closest_batch(view_, rays, hits);
+}
+
+void Bvh::occluded(const RayBatch& rays, OccludedBatch& result) const noexcept {
+    const bool planes = !geometry_->planes.empty();
+    for (int i = 0; i < rays.count; ++i) {
+        result[static_cast<std::size_t>(i)] =
+            planes && begin_query(PreparedRay(rays[i], view_.magnitude), *geometry_).found();
+    }
+    if (view_.units != nullptr) kernels_->occluded_batch(view_, rays, result.data());
+}
+
+std::size_t Bvh::memory_bytes() const { return tree_.units.capacity() * sizeof(BvhTree::Unit); }
+
+TraversalCounts Bvh::count_traversal(const RayBatch& rays) const noexcept {
+    TraversalCounts counts;
+    for (int i = 0; i < rays.count && view_.units != nullptr; ++i) kernels_->count_closest(view_, rays[i], counts);
+    return counts;
+}
+
+}  // namespace glint

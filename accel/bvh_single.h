@@ -1,0 +1,97 @@
+// One ray through the tree at a time.
+// Invariant: children are taken near to far, and a child is left out only when the best hit lies before its padded entry.
+#pragma once
+
+#include "accel/bvh_leaves.h"
+
+namespace glint::GLINT_ISA {
+
+// Each level leaves at most seven siblings behind.
+constexpr int kMaxBvhLevels = 64;
+constexpr int kStackSize = kMaxBvhLevels * (kBvhWidth - 1) + kBvhWidth;
+
+struct TraversalStack {
+    alignas(32) BvhRef ref[kStackSize];
+    alignas(32) float near[kStackSize];
+    int top = 0;
+};
+
+// Pushes the children of `mask` far to near.
+inline void push_children(TraversalStack& stack, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
+#if defined(__AVX512VL__)
+    const __m256i order = _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(shift));
+    const __m256 inf = _mm256_set1_ps(HUGE_VALF);
+    const __m256 sorted = _mm256_permutexvar_ps(order, _mm256_mask_blend_ps(static_cast<__mmask8>(mask), inf, near.v));
+    const __m256i refs = _mm256_permutexvar_epi32(order, _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child)));
+    const __mmask8 present = _mm256_cmp_ps_mask(sorted, inf, _CMP_LT_OQ);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + stack.top), _mm256_maskz_compress_epi32(present, refs));
+    _mm256_storeu_ps(stack.near + stack.top, _mm256_maskz_compress_ps(present, sorted));
+    stack.top += __builtin_popcount(mask);
+#else
+    alignas(32) float distance[kBvhWidth];
+    near.store(distance);
+    for (int i = 0; i < kBvhWidth; ++i) {
+        const unsigned k = node.order[i] >> shift & 7u;
+        stack.ref[stack.top] = node.child[k];
+        stack.near[stack.top] = distance[k];
+        stack.top += static_cast<int>(mask >> k & 1u);
+    }
+#endif
+}
+
+// Pushes the children of `mask` in any order, without distances.
+inline void push_unsorted(TraversalStack& stack, const BvhNode& node, unsigned mask) noexcept {
+#if defined(__AVX512VL__)
+    const __m256i refs = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + stack.top),
+                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), refs));
+    stack.top += __builtin_popcount(mask);
+#else
+    for (; mask != 0; mask &= mask - 1) stack.ref[stack.top++] = node.child[__builtin_ctz(mask)];
+#endif
+}
+
+// Improves `best`. With `any`, ends at the first hit. `visit(ref)` hears of every node and leaf.
+template <bool any, class Visit>
+inline void traverse(const BvhView& bvh, const Ray& ray, Hit& best, Visit visit) noexcept {
+    const RayScalars scalars = prepare(&ray.origin.x, &ray.direction.x, bvh.magnitude, ray.t_max);
+    if (!scalars.usable) return;
+    const SlabRay slabs(scalars);
+    const LeafRay leaf_ray(ray, scalars, bvh);
+    TraversalStack stack;
+    Float8 limit = Float8::set(best.t);
+    BvhRef at = 0;
+    for (;;) {
+        visit(at);
+        if ((at & kLeafBit) == 0) {
+            const BvhNode& node = bvh.at<BvhNode>(at);
+            Float8 near;
+            const unsigned mask = enter(node, slabs, limit, near);
+            if (mask != 0) {
+                if ((mask & (mask - 1)) == 0) {
+                    at = node.child[__builtin_ctz(mask)];
+                    continue;
+                }
+                if constexpr (any) {
+                    push_unsorted(stack, node, mask);
+                } else {
+                    push_children(stack, node, mask, slabs.shift, near);
+                }
+                at = stack.ref[--stack.top];
+                continue;
+            }
+        } else {
+            const PrimitiveId before = best.primitive;
+            meet_leaf<any>(at, leaf_ray, best);
+            if (any && best.primitive != before) return;
+            limit = Float8::set(best.t);
+        }
+        do {
+            if (stack.top == 0) return;
+            --stack.top;
+        } while (!any && stack.near[stack.top] > best.t);
+        at = stack.ref[stack.top];
+    }
+}
+
+}  // namespace glint::GLINT_ISA

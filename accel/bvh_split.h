@@ -1,0 +1,85 @@
+// Where to cut a set of boxes in two: binned surface area heuristic (Wald 2007, "On fast Construction of SAH-based Bounding Volume
+// Hierarchies"), with the cost of a leaf counted in blocks of eight.
+// Knows boxes and ids, no tree. Invariant: the result depends on the set alone, not on threads.
+#pragma once
+
+#include <emmintrin.h>
+
+#include <cstdint>
+#include <span>
+
+#include "accel/geometry.h"
+#include "accel/parallel.h"
+
+namespace glint {
+
+// x, y, z in the first three lanes.
+struct Box4 {
+    __m128 lo = _mm_set1_ps(kInfinity), hi = _mm_set1_ps(-kInfinity);
+
+    void grow(__m128 p_lo, __m128 p_hi) {
+        lo = _mm_min_ps(lo, p_lo);
+        hi = _mm_max_ps(hi, p_hi);
+    }
+    void grow(const Box4& b) { grow(b.lo, b.hi); }
+    // Half the surface area; 0 when empty.
+    [[nodiscard]] float half_area() const {
+        alignas(16) float d[4];
+        _mm_store_ps(d, _mm_sub_ps(hi, lo));
+        return d[0] >= 0.0f ? d[0] * d[1] + d[1] * d[2] + d[2] * d[0] : 0.0f;
+    }
+};
+
+// A primitive's bounds, and its id beside them.
+struct alignas(16) BuildRef {
+    float lo[3];
+    PrimitiveId id;
+    float hi[3];
+    std::uint32_t zero;
+
+    [[nodiscard]] __m128 low() const {
+        // Without the id, whose bits are a subnormal float and slow.
+        return _mm_and_ps(_mm_load_ps(lo), _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0)));
+    }
+    [[nodiscard]] __m128 high() const { return _mm_load_ps(hi); }
+    // Twice the centre.
+    [[nodiscard]] __m128 center2() const { return _mm_add_ps(low(), high()); }
+};
+
+// A set of references with what is known of it.
+struct BuildRange {
+    std::uint32_t first = 0, count = 0;
+    Box4 bounds, centers;  // centers: of twice the centres
+};
+
+// Maps a centre to its bin; the same function when counting and when partitioning.
+struct Binning {
+    __m128 lo, scale;
+    int bins;
+
+    explicit Binning(const BuildRange& range);
+    // The bins along the three axes in the first three lanes.
+    [[nodiscard]] __m128i operator()(__m128 center2) const;
+};
+
+struct Split {
+    int axis = -1;            // -1: the centres do not differ
+    int bin = 0;              // the first bin of the right side
+    float cost = kInfinity;   // sum of both sides' expected cost times half area
+    Box4 left, right;
+};
+
+// Cost of `count` primitives in one leaf or, for more, in the leaves to come; a node visit is 1.
+[[nodiscard]] float leaf_cost(std::uint32_t count, bool small);
+
+[[nodiscard]] Split best_split(std::span<const BuildRef> refs, const BuildRange& range, const ParallelFor& parallel_for);
+// Cuts `range` at `split`; the order within the sides is of no importance.
+void partition(std::span<BuildRef> refs, const BuildRange& range, const Split& split, BuildRange& left, BuildRange& right);
+// Halves `range` by the number of its members, along the widest axis of their centres.
+void partition_median(std::span<BuildRef> refs, const BuildRange& range, BuildRange& left, BuildRange& right);
+// Splits off the members of the first member's kind. Returns false when all are of one kind.
+bool partition_by_kind(std::span<BuildRef> refs, const BuildRange& range, BuildRange& left, BuildRange& right);
+// Bounds of refs[first, first + count).
+[[nodiscard]] BuildRange measure(std::span<const BuildRef> refs, std::uint32_t first, std::uint32_t count);
+
+}  // namespace glint
