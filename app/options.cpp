@@ -25,7 +25,7 @@ constexpr std::string_view kUsage =
     "  glint compare A B [--reference-threshold X]       RMSE and largest difference of two pictures\n"
     "  glint info SCENE                        what a scene holds and which accelerator it gets\n"
     "  glint list                              built-in scenes, accelerators, samplers, features\n\n"
-    "SCENE is a .p3f, .nff, .gltf or .glb file, or builtin:NAME[,key=value...].\n";
+    "SCENE is a .p3f, .nff, .gltf, .glb, .ply or .ply.gz file, or builtin:NAME[,key=value...].\n";
 
 // One CLI::App that fills `o`; each value is checked where it is declared.
 class Parser {

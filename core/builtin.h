@@ -1,6 +1,6 @@
 // The makers of the built-in scenes, one per recipe; scene_builtin.cpp holds the table that names them.
 // Knows no file. Arguments are in range: the table checks what a user types.
-// The course's scenes answer as their P3F files do: no falloff, transfer linear. Cornell and glass are our own.
+// The course's scenes answer as their P3F files do: no falloff, transfer linear. The others are our own.
 #pragma once
 
 #include "core/scene.h"
@@ -15,5 +15,10 @@ namespace glint::builtin {
 
 enum class GlassPiece { all, ball, slab, nested, shell };
 [[nodiscard]] SceneBuilder glass(GlassPiece what);
+
+// n triangles beside a handful of others; knot and stadium make an odd n even.
+[[nodiscard]] SceneBuilder knot(int n);
+[[nodiscard]] SceneBuilder stadium(int n);
+[[nodiscard]] SceneBuilder soup(int n);
 
 }  // namespace glint::builtin

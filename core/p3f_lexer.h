@@ -1,4 +1,4 @@
-// Words, numbers, line numbers and messages of the P3F/NFF text format; the ASCII PLY reader shares them.
+// Words, numbers, line numbers and messages of the P3F/NFF text format; the PLY reader shares the messages.
 // Knows no statement of the format. Line breaks mean nothing except to comments, which run from '#' to the end of the line.
 // Invariant: a number handed out is finite and survives the conversion to float; counts fit into what is left of the file.
 #pragma once

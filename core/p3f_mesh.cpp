@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "core/contained_path.h"
-#include "core/p3f_ply.h"
 #include "core/p3f_reader.h"
+#include "core/ply.h"
 #include "core/polygon.h"
 #include "core/scene_io.h"
 
@@ -75,7 +75,7 @@ void read_polygon(Reader& r, const Token& word) {
 // Unit length, or (0,0,0) for "none": a normal without direction cannot shade.
 glm::vec3 shading_normal(glm::dvec3 n) {
     const double length = glm::length(n);
-    return length > 0.0 ? glm::vec3(n / length) : glm::vec3(0.0f);
+    return length > 0.0 && std::isfinite(length) ? glm::vec3(n / length) : glm::vec3(0.0f);
 }
 
 // Positions with normals as NFF has it; one teapot of the course writes positions only, which the count of numbers tells.

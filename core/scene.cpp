@@ -52,6 +52,14 @@ bool SceneBuilder::add(const Plane& p, std::uint32_t material) {
     return true;
 }
 
+void SceneBuilder::reserve(std::size_t vertices, std::size_t triangles) {
+    geometry_.vertices.reserve(geometry_.vertices.size() + vertices);
+    scene_.normals.reserve(scene_.normals.size() + vertices);
+    geometry_.triangles.reserve(geometry_.triangles.size() + triangles);
+    auto& materials = scene_.material_of[slot(PrimitiveKind::triangle)];
+    materials.reserve(materials.size() + triangles);
+}
+
 std::uint32_t SceneBuilder::add_vertex(glm::vec3 position, glm::vec3 normal) {
     check_room(geometry_.vertices.size());
     any_normal_ = any_normal_ || normal != glm::vec3(0.0f);

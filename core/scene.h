@@ -62,6 +62,8 @@ public:
     // Vertices are appended once and shared by triangles; returns the new vertex's index.
     std::uint32_t add_vertex(glm::vec3 position, glm::vec3 normal = glm::vec3(0.0f));
     bool add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
+    // Room for that many more, where a reader knows: growing step by step would double the peak of memory.
+    void reserve(std::size_t vertices, std::size_t triangles);
     [[nodiscard]] const Geometry& geometry() const { return geometry_; }
     // Fills geometry, normals, materials and material_of of scene(); the builder is empty afterwards.
     [[nodiscard]] std::shared_ptr<const Scene> finish();

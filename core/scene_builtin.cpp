@@ -9,6 +9,7 @@
 #include "core/mountain.h"
 #include "core/scene_io.h"
 #include "core/sphereflake.h"
+#include "core/torus_knot.h"
 
 namespace glint {
 namespace {
@@ -26,6 +27,7 @@ struct Recipe {
     SceneBuilder (*make)(int value);
 };
 
+constexpr int kMaxSoupTriangles = 10000000;
 constexpr std::string_view kPieces[] = {"all", "ball", "slab", "nested", "shell"};
 
 const std::vector<Recipe>& recipes() {
@@ -44,6 +46,15 @@ const std::vector<Recipe>& recipes() {
         {{"glass", "what=all|ball|slab|nested|shell (all)", "a ball lens, a slab, water in glass and a hollow shell"},
          {"what", 0, 4, 0, kPieces},
          [](int piece) { return builtin::glass(static_cast<builtin::GlassPiece>(piece)); }},
+        {{"knot", "n=10000..10000000 (868870)", "a rough torus knot of n triangles, closed, on a floor"},
+         {"n", kMinKnotTriangles, kMaxKnotTriangles, 868870},
+         builtin::knot},
+        {{"stadium", "n=10000..10000000 (100000)", "a knot of n triangles, a thousandth of the field it lies in"},
+         {"n", kMinKnotTriangles, kMaxKnotTriangles, 100000},
+         builtin::stadium},
+        {{"soup", "n=1..10000000 (100000)", "n triangles of random place, size and orientation in a cube"},
+         {"n", 1, kMaxSoupTriangles, 100000},
+         builtin::soup},
     };
     return table;
 }

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kBuiltinPrefix = "builtin:";
-constexpr std::string_view kReadable = ".p3f, .nff, .gltf, .glb or builtin:NAME";
+constexpr std::string_view kReadable = ".p3f, .nff, .gltf, .glb, .ply, .ply.gz or builtin:NAME";
 
 std::string ending_of(const fs::path& path) {
     std::string ending = path.extension().string();
@@ -29,7 +29,8 @@ std::shared_ptr<const Scene> load_file(const std::string& name, const LoadOption
         return reader::read_p3f(reader::read_file(path), name, path.parent_path(), options);
     }
     if (ending == ".gltf" || ending == ".glb") return reader::read_gltf(path, options);
-    if (ending == ".obj" || ending == ".ply") throw SceneError(fmt::format("{}: {} is not supported yet", name, ending));
+    if (ending == ".ply" || (ending == ".gz" && ending_of(path.stem()) == ".ply")) return reader::read_mesh(path);
+    if (ending == ".obj") throw SceneError(fmt::format("{}: {} is not supported yet", name, ending));
     const auto& scenes = builtin_scenes();
     if (std::any_of(scenes.begin(), scenes.end(), [&](const BuiltinScene& s) { return s.name == name; })) {
         throw SceneError(fmt::format("{}: not a scene file; did you mean builtin:{}?", name, name));

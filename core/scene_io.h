@@ -32,6 +32,8 @@ namespace reader {
 [[nodiscard]] std::shared_ptr<const Scene> read_p3f(std::string_view text, const std::string& name,
                                                     const std::filesystem::path& folder, const LoadOptions& options);
 [[nodiscard]] std::shared_ptr<const Scene> read_gltf(const std::filesystem::path& path, const LoadOptions& options);
+// A .ply, packed by gzip or not, on a stage of our own: a mesh has no camera and no light.
+[[nodiscard]] std::shared_ptr<const Scene> read_mesh(const std::filesystem::path& path);
 // spec: what follows `builtin:`, for example "balls,level=4".
 [[nodiscard]] std::shared_ptr<const Scene> make_builtin(const std::string& spec);
 // The whole file, at most `limit` bytes; SceneError when missing, a folder, unreadable or larger.

@@ -205,17 +205,17 @@ TEST(P3fFiles, ABrokenPlyIsRefusedWithItsLine) {
         EXPECT_NE(message.find("q.ply:" + part), std::string::npos) << message << " for " << to;
     };
     expect("vertex 5", "vertex 1000000000000", "4: 'vertex' announces 1000000000000, more than the file can hold");
-    expect("face 2", "face -2", "11: 'face' announces -2");
-    expect("face 2", "face 3", "20: a list needs 1 number, found 0 before the end of the file");
+    expect("face 2", "face -2", "11: 'face' announces '-2', expected a count");
+    expect("face 2", "face 3", "20: the file ends too early");
     expect("3 1 4 2", "3 1 5 2", "20: index 5 is out of range");
     expect("3 1 4 2", "2 1 4", "20: a face of 2 vertices");
     expect("3 1 4 2", "900 1 4", "20: a list announces 900, more than the file can hold");
-    expect("ascii", "binary_little_endian", "2: not an ASCII PLY file");
-    expect("ply\n", "", "1: not an ASCII PLY file");
-    expect("end_header", "", "20: the header has no 'end_header'");
+    expect("ascii", "binary", "2: unknown format 'binary'");
+    expect("ply\n", "", "1: not a PLY file");
+    expect("end_header\n", "", "13: '0' is no word of a PLY header");
     expect("property float z\n", "", "4: 'vertex' has no x, y, z");
-    expect("1 1 0 0", "1 nan 0 0", "16: 'nan' is not a finite number");
-    EXPECT_NE(ply_refusal(folder, "", "", "").find("q.ply:1: not an ASCII PLY file"), std::string::npos);
+    expect("1 1 0 0", "1 nan 0 0", "16: vertex 2 is not finite");
+    EXPECT_NE(ply_refusal(folder, "", "", "").find("q.ply:1: not a PLY file"), std::string::npos);
 }
 
 TEST(P3fFiles, APlyOutsideTheSceneIsRefused) {

@@ -70,10 +70,12 @@ TEST_F(SceneDoor, ChoosesTheReaderByTheEndingInAnyCase) {
 
 TEST_F(SceneDoor, RefusesWhatItCannotReadAndSaysWhatItCan) {
     EXPECT_EQ(refusal([&] { (void)load_scene("a/b.obj"); }), "a/b.obj: .obj is not supported yet");
-    EXPECT_EQ(refusal([&] { (void)load_scene("b.PLY"); }), "b.PLY: .ply is not supported yet");
+    EXPECT_EQ(refusal([&] { (void)load_scene("b.PLY"); }), "b.PLY: no such file");
+    EXPECT_EQ(refusal([&] { (void)load_scene("b.ply.gz"); }), "b.ply.gz: no such file");
+    EXPECT_NE(refusal([&] { (void)load_scene("b.gz"); }).find("unknown kind of scene"), std::string::npos);
     EXPECT_EQ(refusal([&] { (void)load_scene("balls"); }), "balls: not a scene file; did you mean builtin:balls?");
     EXPECT_EQ(refusal([&] { (void)load_scene("x.txt"); }),
-              "x.txt: unknown kind of scene, expected .p3f, .nff, .gltf, .glb or builtin:NAME");
+              "x.txt: unknown kind of scene, expected .p3f, .nff, .gltf, .glb, .ply, .ply.gz or builtin:NAME");
     EXPECT_NE(refusal([&] { (void)load_scene(""); }).find("unknown kind of scene"), std::string::npos);
     EXPECT_EQ(refusal([&] { (void)load_scene("none.p3f"); }), "none.p3f: no such file");
 }
