@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,41 @@ private:
     std::string header_;
     std::vector<std::vector<PlyValue>> records_;
 };
+
+inline const std::string kMeshHeader =
+    "comment properties in no usual order\nobj_info none\nelement material 2\nproperty list ushort double weights\n"
+    "property char kind\nelement vertex 6\nproperty uchar red\nproperty double z\nproperty float nx\nproperty float x\n"
+    "property list uchar short links\nproperty float ny\nproperty float y\nproperty float nz\nelement face 3\n"
+    "property int flags\nproperty list uchar uint vertex_indices\nproperty list uchar float texcoord\nelement edge 1\n"
+    "property int vertex1\nproperty int vertex2\nend_header\n";
+
+// An arrow head (concave) with its notch at vertex 2, a triangle above it, and one without area.
+inline PlyFile arrow() {
+    PlyFile file(kMeshHeader);
+    file.add({{"ushort", 2}, {"double", 0.5}, {"double", -1e300}, {"char", -7}});
+    file.add({{"ushort", 0}, {"char", 1}});
+    const double third = 1.0 / 3.0;
+    const double points[6][3] = {{-1.1, 0, third}, {0, 3e-5, third}, {1.7, 0, third}, {0, 2.5, third}, {0, 1, 2}, {0, 1, 2}};
+    for (int i = 0; i < 6; ++i) {
+        const double n = i == 5 ? std::numeric_limits<double>::quiet_NaN() : 2.0 * (i % 3);
+        std::vector<PlyValue> record{{"uchar", 200.0}, {"double", points[i][2]}, {"float", 0.0}, {"float", points[i][0]}};
+        record.push_back({"uchar", static_cast<double>(i)});
+        for (int k = 0; k < i; ++k) record.push_back({"short", -300.0 * k});
+        record.push_back({"float", 0.0});
+        record.push_back({"float", points[i][1]});
+        record.push_back({"float", n});
+        file.add(record);
+    }
+    file.add({{"int", -5}, {"uchar", 4}, {"uint", 0}, {"uint", 1}, {"uint", 2}, {"uint", 3}, {"uchar", 1}, {"float", 0.25}});
+    file.add({{"int", 1}, {"uchar", 3}, {"uint", 2}, {"uint", 3}, {"uint", 4}, {"uchar", 0}});
+    file.add({{"int", 1}, {"uchar", 3}, {"uint", 3}, {"uint", 4}, {"uint", 5}, {"uchar", 0}});
+    file.add({{"int", 0}, {"int", 1}});
+    return file;
+}
+
+inline const std::string kQuad =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
+    "property list char int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
 
 inline std::string gzipped(const std::string& bytes) {
     libdeflate_compressor* const compressor = libdeflate_alloc_compressor(6);
