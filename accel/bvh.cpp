@@ -34,37 +34,36 @@ Bvh::Bvh(std::shared_ptr<const Geometry> geometry, const ParallelFor& parallel_f
     : geometry_(std::move(geometry)),
       tree_(build_bvh(*geometry_, parallel_for)),
       view_(tree_.view(*geometry_)),
+      has_planes_(!geometry_->planes.empty()),
       kernels_(&bvh_kernels(isa)) {}
 
 Hit Bvh::closest_hit(const Ray& ray) const noexcept {
     Hit best;
     best.t = ray.t_max;
-    if (!geometry_->planes.empty()) best = begin_query(PreparedRay(ray, view_.magnitude), *geometry_);
+    if (has_planes_) best = begin_query(PreparedRay(ray, view_.magnitude), *geometry_);
     if (view_.units != nullptr) kernels_->closest(view_, ray, best);
     return best;
 }
 
 bool Bvh::occluded(const Ray& ray) const noexcept {
-    if (!geometry_->planes.empty() && begin_query(PreparedRay(ray, view_.magnitude), *geometry_).found()) return true;
+    if (has_planes_ && begin_query(PreparedRay(ray, view_.magnitude), *geometry_).found()) return true;
     return view_.units != nullptr && kernels_->occluded(view_, ray);
 }
 
 void Bvh::closest_hits(const RayBatch& rays, HitBatch& hits) const noexcept {
-    const bool planes = !geometry_->planes.empty();
     for (int i = 0; i < rays.count; ++i) {
         Hit best;
         best.t = rays.t_max[i];
-        if (planes) best = begin_query(PreparedRay(rays[i], view_.magnitude), *geometry_);
+        if (has_planes_) best = begin_query(PreparedRay(rays[i], view_.magnitude), *geometry_);
         hits.set(i, best);
     }
     if (view_.units != nullptr) kernels_->closest_batch(view_, rays, hits);
 }
 
 void Bvh::occluded(const RayBatch& rays, OccludedBatch& result) const noexcept {
-    const bool planes = !geometry_->planes.empty();
     for (int i = 0; i < rays.count; ++i) {
         result[static_cast<std::size_t>(i)] =
-            planes && begin_query(PreparedRay(rays[i], view_.magnitude), *geometry_).found();
+            has_planes_ && begin_query(PreparedRay(rays[i], view_.magnitude), *geometry_).found();
     }
     if (view_.units != nullptr) kernels_->occluded_batch(view_, rays, result.data());
 }

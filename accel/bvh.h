@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "accel/bvh_kernels.h"
+#include "accel/huge_pages.h"
 #include "accel/parallel.h"
 #include "accel/primitive.h"
 
@@ -21,7 +22,8 @@ struct BvhTree {
     struct alignas(kBvhUnit) Unit {
         std::byte bytes[kBvhUnit];
     };
-    std::vector<Unit> units;  // empty for an empty scene
+    using Units = std::vector<Unit, HugePageAllocator<Unit>>;
+    Units units;  // empty for an empty scene
     Aabb bounds;
     int depth = 0;  // levels of nodes
     std::size_t nodes = 0, leaves = 0;
@@ -51,6 +53,7 @@ private:
     std::shared_ptr<const Geometry> geometry_;
     BvhTree tree_;
     BvhView view_;
+    bool has_planes_ = false;
     const BvhKernels* kernels_;
 };
 

@@ -14,7 +14,7 @@ constexpr int kSahLevels = 32;
 // Sets up to this size are built by one task each; larger ones are cut by all threads together.
 constexpr std::uint32_t kTaskSize = 1u << 14;
 
-using Units = std::vector<BvhTree::Unit>;
+using Units = BvhTree::Units;
 using Ids = std::array<PrimitiveId, kBvhWidth>;
 
 constexpr std::size_t units_of(std::size_t bytes) { return bytes / kBvhUnit; }
@@ -156,7 +156,8 @@ private:
             std::array<std::uint32_t, kBvhWidth> far_first{0, 1, 2, 3, 4, 5, 6, 7};
             const auto n = static_cast<std::ptrdiff_t>(children.size());
             for (std::ptrdiff_t i = 1; i < n; ++i) {
-                for (auto k = static_cast<std::size_t>(i); k > 0 && key[octant][far_first[k]] > key[octant][far_first[k - 1]]; --k)
+                for (auto k = static_cast<std::size_t>(i); k > 0 && key[octant][far_first[k]] > key[octant][far_first[k - 1]];
+                     --k)
                     std::swap(far_first[k], far_first[k - 1]);
             }
             for (std::size_t i = 0; i < kBvhWidth; ++i) {

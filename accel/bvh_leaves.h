@@ -96,8 +96,8 @@ inline Float8 meet_spheres(const DoubleVector& f, const DoubleVector& d, Double8
 }
 
 // Operation for operation intersect_box(); `face` counts as there.
-inline Float8 meet_boxes(const DoubleVector& o, const DoubleVector& d, const DoubleVector& lo, const DoubleVector& hi, Float8 limit,
-                         Float8& face) noexcept {
+inline Float8 meet_boxes(const DoubleVector& o, const DoubleVector& d, const DoubleVector& lo, const DoubleVector& hi,
+                         Float8 limit, Float8& face) noexcept {
     const Double8 zero = Double8::set(0.0);
     Double8 near = Double8::set(-HUGE_VAL), far = Double8::set(HUGE_VAL), near_face = zero, far_face = zero;
     auto outside = lt(zero, zero);
@@ -131,7 +131,7 @@ struct LeafRay {
     LeafRay(const Ray& r, const RayScalars& s, const BvhView& b) noexcept
         : ray(r),
           bvh(b),
-          o{Float8::set((&r.origin.x)[s.kx]), Float8::set((&r.origin.x)[s.ky]), Float8::set((&r.origin.x)[s.kz])},
+          o{Float8::set(s.o[0]), Float8::set(s.o[1]), Float8::set(s.o[2])},
           shear_x(Float8::set(s.shear_x)),
           shear_y(Float8::set(s.shear_y)),
           inverse_z(Float8::set(s.inverse_z)),
@@ -172,9 +172,12 @@ inline void meet_leaf(const TriangleBlock& b, const LeafRay& ray, Hit& best) noe
     const float *x = b.v[ray.kx], *y = b.v[ray.ky], *z = b.v[ray.kz];
     constexpr int kVertex = 3 * kBvhWidth;
     Triangles<Float8> s;
-    s.ax = Float8::load(x) - ray.o[0], s.bx = Float8::load(x + kVertex) - ray.o[0], s.cx = Float8::load(x + 2 * kVertex) - ray.o[0];
-    s.ay = Float8::load(y) - ray.o[1], s.by = Float8::load(y + kVertex) - ray.o[1], s.cy = Float8::load(y + 2 * kVertex) - ray.o[1];
-    s.az = Float8::load(z) - ray.o[2], s.bz = Float8::load(z + kVertex) - ray.o[2], s.cz = Float8::load(z + 2 * kVertex) - ray.o[2];
+    s.ax = Float8::load(x) - ray.o[0], s.bx = Float8::load(x + kVertex) - ray.o[0],
+    s.cx = Float8::load(x + 2 * kVertex) - ray.o[0];
+    s.ay = Float8::load(y) - ray.o[1], s.by = Float8::load(y + kVertex) - ray.o[1],
+    s.cy = Float8::load(y + 2 * kVertex) - ray.o[1];
+    s.az = Float8::load(z) - ray.o[2], s.bz = Float8::load(z + kVertex) - ray.o[2],
+    s.cz = Float8::load(z + 2 * kVertex) - ray.o[2];
     s.shear(ray.shear_x, ray.shear_y);
     const TriangleLanes<Float8> r = meet_triangles(s, ray.inverse_z);
     const float limit = best.t < kLargestT ? best.t : kLargestT;
@@ -191,8 +194,8 @@ inline void meet_leaf(const SphereBlock& b, const LeafRay& ray, Hit& best) noexc
     const DoubleVector f{o.x - widen(Float8::load(b.center[0])), o.y - widen(Float8::load(b.center[1])),
                          o.z - widen(Float8::load(b.center[2]))};
     const Float8 zero = Float8::set(0.0f);
-    const Float8 t = meet_spheres(f, ray.direction(), widen(Float8::load(b.radius)),
-                                  Float8::set(best.t < kLargestT ? best.t : kLargestT));
+    const Float8 t =
+        meet_spheres(f, ray.direction(), widen(Float8::load(b.radius)), Float8::set(best.t < kLargestT ? best.t : kLargestT));
     keep_lanes<any>(lt(zero, t).bits(), t, zero, zero, b.id, best);
 }
 

@@ -10,49 +10,55 @@
 
 namespace glint::GLINT_ISA {
 
-// Scalars of one ray; the same values as in PreparedRay.
-struct RayScalars {
-    float reciprocal[3], near_offset[3], far_offset[3];
+// What the tests derive from one ray; the same values as in PreparedRay. Three lanes of four are used.
+struct alignas(16) RayScalars {
+    float reciprocal[4], near_offset[4], far_offset[4];
+    int near_row[4];  // of BvhNode::bounds, those that the ray meets first; last = first ^ 1
     float shear_x, shear_y, inverse_z;
+    float o[3];  // the origin along kx, ky, kz
     int kx, ky, kz;
     unsigned octant;  // bit k set where direction[k] is not negative
     bool usable;
 };
 
+// o and d are read as four floats each, which Ray has behind both.
 inline RayScalars prepare(const float* o, const float* d, float magnitude, float t_max) noexcept {
     RayScalars s;
-    const float ax = std::fabs(d[0]), ay = std::fabs(d[1]), az = std::fabs(d[2]);
-    // The dominant axis from a table: a branch would be mispredicted for incoherent rays.
-    static constexpr unsigned char kAxis[8] = {2, 2, 2, 0, 1, 2, 1, 0};
-    s.kz = kAxis[static_cast<unsigned>(ax >= ay) | static_cast<unsigned>(ax >= az) << 1 | static_cast<unsigned>(ay >= az) << 2];
+    const __m128 sign = _mm_set1_ps(-0.0f), origin = _mm_loadu_ps(o), direction = _mm_loadu_ps(d);
+    const __m128 a = _mm_andnot_ps(sign, direction), b = _mm_andnot_ps(sign, origin);
+    // The dominant axis from a table of x >= y, y >= z, x >= z: a branch would be mispredicted for incoherent rays.
+    static constexpr unsigned char kAxis[8] = {2, 2, 1, 1, 2, 0, 1, 0};
+    const __m128 ge = _mm_cmpge_ps(_mm_shuffle_ps(a, a, _MM_SHUFFLE(0, 0, 1, 0)), _mm_shuffle_ps(a, a, _MM_SHUFFLE(0, 2, 2, 1)));
+    s.kz = kAxis[static_cast<unsigned>(_mm_movemask_ps(ge)) & 7u];
     static constexpr unsigned char kNext[4] = {1, 2, 0, 1};
     s.kx = kNext[s.kz];
     s.ky = kNext[s.kz + 1];
-    const float largest = std::fabs(d[s.kz]);
-    const float ox = std::fabs(o[0]), oy = std::fabs(o[1]), oz = std::fabs(o[2]);
-    const float oxy = ox < oy ? oy : ox;
-    const float size = (oxy < oz ? oz : oxy) + magnitude;
-    const float sum = (o[0] + d[0]) + (o[1] + d[1]) + (o[2] + d[2]);
-    s.usable = std::fabs(sum) <= 3.402823466e38f && t_max > 0.0f && largest >= 0x1p-86f && size <= 0x1p87f * largest;
+    const auto largest_of_three = [](__m128 v) {
+        const __m128 xy = _mm_max_ss(v, _mm_shuffle_ps(v, v, _MM_SHUFFLE(1, 1, 1, 1)));
+        return _mm_max_ss(xy, _mm_shuffle_ps(v, v, _MM_SHUFFLE(2, 2, 2, 2)));
+    };
+    const float largest = _mm_cvtss_f32(largest_of_three(a));
+    const float size = _mm_cvtss_f32(largest_of_three(b)) + magnitude;
+    const __m128 sum = _mm_andnot_ps(sign, _mm_add_ps(origin, direction));
+    const bool finite = (_mm_movemask_ps(_mm_cmple_ps(sum, _mm_set1_ps(3.402823466e38f))) & 7) == 7;
+    s.usable = finite && t_max > 0.0f && largest >= 0x1p-86f && size <= 0x1p87f * largest;
     s.inverse_z = 1.0f / d[s.kz];
     s.shear_x = d[s.kx] * s.inverse_z;
     s.shear_y = d[s.ky] * s.inverse_z;
-    const float smallest = largest * 0x1p-40f, padding = kPadding * size;
-    s.octant = 0;
-    for (int i = 0; i < 3; ++i) {
-        const float a = std::fabs(d[i]);
-        const float r = 1.0f / __builtin_copysignf(a >= smallest ? a : smallest, d[i]);
-        const float slack = padding * std::fabs(r), shift = o[i] * r;
-        s.reciprocal[i] = r;
-        s.near_offset[i] = shift + slack;
-        s.far_offset[i] = shift - slack;
-        s.octant |= (r >= 0.0f ? 1u : 0u) << i;
-    }
+    const __m128 divisor = _mm_or_ps(_mm_max_ps(a, _mm_set1_ps(largest * 0x1p-40f)), _mm_and_ps(sign, direction));
+    const __m128 r = _mm_div_ps(_mm_set1_ps(1.0f), divisor);
+    const __m128 slack = _mm_mul_ps(_mm_set1_ps(kPadding * size), _mm_andnot_ps(sign, r)), shift = _mm_mul_ps(origin, r);
+    _mm_store_ps(s.reciprocal, r);
+    _mm_store_ps(s.near_offset, _mm_add_ps(shift, slack));
+    _mm_store_ps(s.far_offset, _mm_sub_ps(shift, slack));
+    s.octant = ~static_cast<unsigned>(_mm_movemask_ps(direction)) & 7u;
+    _mm_store_si128(reinterpret_cast<__m128i*>(s.near_row),
+                    _mm_sub_epi32(_mm_setr_epi32(0, 2, 4, 0), _mm_srai_epi32(_mm_castps_si128(direction), 31)));
+    s.o[0] = o[s.kx];
+    s.o[1] = o[s.ky];
+    s.o[2] = o[s.kz];
     return s;
 }
-
-// Where each octant finds, in BvhNode::bounds, the rows that a ray meets first; last = first ^ 1.
-inline int near_row(unsigned octant, int axis) noexcept { return 2 * axis + ((octant >> axis & 1u) != 0 ? 0 : 1); }
 
 struct SlabRay {
     Float8 reciprocal[3], near_offset[3], far_offset[3];
@@ -64,7 +70,7 @@ struct SlabRay {
             reciprocal[i] = Float8::set(s.reciprocal[i]);
             near_offset[i] = Float8::set(s.near_offset[i]);
             far_offset[i] = Float8::set(s.far_offset[i]);
-            near_row[i] = GLINT_ISA::near_row(s.octant, i);
+            near_row[i] = s.near_row[i];
         }
     }
 };

@@ -11,36 +11,48 @@ constexpr int kMaxBvhLevels = 64;
 constexpr int kStackSize = kMaxBvhLevels * (kBvhWidth - 1) + kBvhWidth;
 
 struct TraversalStack {
-    alignas(32) BvhRef ref[kStackSize];
-    alignas(32) float near[kStackSize];
-    int top = 0;
+    int top = 0;  // first, beside what else a ray in flight keeps at hand
+    BvhRef ref[kStackSize];
+    float near[kStackSize];
 };
 
-// Pushes the children of `mask` far to near.
-inline void push_children(TraversalStack& stack, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
+// Pushes all but the nearest of the (two or more) children of `mask`, far to near, and returns that one. It is looked up
+// apart, because what was just compressed and stored would come back from the stack too late.
+inline BvhRef push_children(TraversalStack& stack, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
 #if defined(__AVX512VL__)
-    const __m256i order = _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(shift));
+    const __m256i order =
+        _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(shift));
     const __m256 inf = _mm256_set1_ps(HUGE_VALF);
     const __m256 sorted = _mm256_permutexvar_ps(order, _mm256_mask_blend_ps(static_cast<__mmask8>(mask), inf, near.v));
     const __m256i refs = _mm256_permutexvar_epi32(order, _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child)));
     const __mmask8 present = _mm256_cmp_ps_mask(sorted, inf, _CMP_LT_OQ);
+    const int last = 31 - __builtin_clz(static_cast<unsigned>(present));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + stack.top), _mm256_maskz_compress_epi32(present, refs));
     _mm256_storeu_ps(stack.near + stack.top, _mm256_maskz_compress_ps(present, sorted));
-    stack.top += __builtin_popcount(mask);
+    stack.top += __builtin_popcount(mask) - 1;
+    return node.child[node.order[last] >> shift & 7u];
 #else
     alignas(32) float distance[kBvhWidth];
     near.store(distance);
+    BvhRef nearest = 0;
+    int top = stack.top;
     for (int i = 0; i < kBvhWidth; ++i) {
         const unsigned k = node.order[i] >> shift & 7u;
-        stack.ref[stack.top] = node.child[k];
-        stack.near[stack.top] = distance[k];
-        stack.top += static_cast<int>(mask >> k & 1u);
+        const bool entered = (mask >> k & 1u) != 0;
+        stack.ref[top] = node.child[k];
+        stack.near[top] = distance[k];
+        nearest = entered ? node.child[k] : nearest;
+        top += entered ? 1 : 0;
     }
+    stack.top = top - 1;
+    return nearest;
 #endif
 }
 
-// Pushes the children of `mask` in any order, without distances.
-inline void push_unsorted(TraversalStack& stack, const BvhNode& node, unsigned mask) noexcept {
+// The same in any order and without distances.
+inline BvhRef push_unsorted(TraversalStack& stack, const BvhNode& node, unsigned mask) noexcept {
+    const BvhRef first = node.child[__builtin_ctz(mask)];
+    mask &= mask - 1;
 #if defined(__AVX512VL__)
     const __m256i refs = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + stack.top),
@@ -49,6 +61,7 @@ inline void push_unsorted(TraversalStack& stack, const BvhNode& node, unsigned m
 #else
     for (; mask != 0; mask &= mask - 1) stack.ref[stack.top++] = node.child[__builtin_ctz(mask)];
 #endif
+    return first;
 }
 
 // Improves `best`. With `any`, ends at the first hit. `visit(ref)` hears of every node and leaf.
@@ -70,14 +83,11 @@ inline void traverse(const BvhView& bvh, const Ray& ray, Hit& best, Visit visit)
             if (mask != 0) {
                 if ((mask & (mask - 1)) == 0) {
                     at = node.child[__builtin_ctz(mask)];
-                    continue;
-                }
-                if constexpr (any) {
-                    push_unsorted(stack, node, mask);
+                } else if constexpr (any) {
+                    at = push_unsorted(stack, node, mask);
                 } else {
-                    push_children(stack, node, mask, slabs.shift, near);
+                    at = push_children(stack, node, mask, slabs.shift, near);
                 }
-                at = stack.ref[--stack.top];
                 continue;
             }
         } else {

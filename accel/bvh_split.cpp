@@ -53,16 +53,14 @@ std::span<const BuildRef> members(std::span<const BuildRef> refs, const BuildRan
 
 Binning::Binning(const BuildRange& range) : lo(range.centers.lo) {
     // Few bins for few primitives: clearing and sweeping them would cost more than the primitives themselves.
-    bins = static_cast<int>(std::min<std::uint32_t>(kMaxBins, 8 + range.count / 8));
+    bins = static_cast<int>(std::min<std::uint32_t>(kMaxBins, 4 + range.count));
     const __m128 size = _mm_sub_ps(range.centers.hi, range.centers.lo);
     const __m128 s = _mm_div_ps(_mm_set1_ps(static_cast<float>(bins) * 0.99999f), size);
     // An extent so small that its reciprocal overflows counts as none.
     scale = _mm_and_ps(s, _mm_cmplt_ps(s, _mm_set1_ps(kInfinity)));
 }
 
-inline __m128i Binning::operator()(__m128 center2) const {
-    return _mm_cvttps_epi32(_mm_mul_ps(_mm_sub_ps(center2, lo), scale));
-}
+inline __m128i Binning::operator()(__m128 center2) const { return _mm_cvttps_epi32(_mm_mul_ps(_mm_sub_ps(center2, lo), scale)); }
 
 float leaf_cost(std::uint32_t count, bool small) {
     const float n = static_cast<float>(count);
@@ -87,7 +85,7 @@ Split best_split(std::span<const BuildRef> refs, const BuildRange& range, const 
         });
         for (const Bins& b : part) all.add(b, binning.bins);
     }
-    const bool small = range.count <= 4 * kBvhWidth;
+    const bool small = range.count <= 16 * kBvhWidth;
     alignas(16) float scale[4];
     _mm_store_ps(scale, binning.scale);
     Split best;

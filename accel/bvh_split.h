@@ -1,6 +1,6 @@
-// Where to cut a set of boxes in two: binned surface area heuristic (Wald 2007, "On fast Construction of SAH-based Bounding Volume
-// Hierarchies"), with the cost of a leaf counted in blocks of eight.
-// Knows boxes and ids, no tree. Invariant: the result depends on the set alone, not on threads.
+// Where to cut a set of boxes in two: binned surface area heuristic (Wald 2007, "On fast Construction of SAH-based Bounding
+// Volume Hierarchies"), with the cost of a leaf counted in blocks of eight. Knows boxes and ids, no tree. Invariant: the result
+// depends on the set alone, not on threads.
 #pragma once
 
 #include <emmintrin.h>
@@ -63,9 +63,9 @@ struct Binning {
 };
 
 struct Split {
-    int axis = -1;            // -1: the centres do not differ
-    int bin = 0;              // the first bin of the right side
-    float cost = kInfinity;   // sum of both sides' expected cost times half area
+    int axis = -1;           // -1: the centres do not differ
+    int bin = 0;             // the first bin of the right side
+    float cost = kInfinity;  // sum of both sides' expected cost times half area
     Box4 left, right;
 };
 

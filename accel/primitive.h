@@ -43,7 +43,8 @@ inline PreparedRay::PreparedRay(const Ray& ray, float magnitude) noexcept
     const glm::vec3 sum = origin + direction;
     const float size = std::max(std::max(std::abs(origin.x), std::abs(origin.y)), std::abs(origin.z)) + magnitude;
     // A direction so short that a slab's arithmetic overflows counts as zero. With what is left no slab is ever NaN.
-    usable = std::isfinite(sum.x + sum.y + sum.z) && t_max > 0.0f && largest >= 0x1p-86f && size <= 0x1p87f * largest;
+    usable = std::isfinite(sum.x) && std::isfinite(sum.y) && std::isfinite(sum.z) && t_max > 0.0f && largest >= 0x1p-86f &&
+             size <= 0x1p87f * largest;
     if (!usable) {
         reciprocal = near_offset = far_offset = glm::vec3(0.0f);
         shear_x = shear_y = inverse_z = 0.0f;

@@ -38,26 +38,26 @@ struct BitMask {
     friend BitMask operator-(BitMask a, BitMask b) { return {a.m & ~b.m}; }
 };
 
-#define GLINT_MASKED_VECTOR(Vector, Register, Scalar, kWidth, P, T, Cmp)                                                \
-    struct Vector {                                                                                                     \
-        static constexpr int kLanes = kWidth;                                                                           \
-        using Mask = BitMask<kWidth>;                                                                                   \
-        Register v;                                                                                                     \
-        static Vector load(const Scalar* p) { return {P##load_p##T(p)}; }                                               \
-        static Vector set(Scalar x) { return {P##set1_p##T(x)}; }                                                       \
-        void store(Scalar* p) const { P##storeu_p##T(p, v); }                                                           \
-    };                                                                                                                  \
-    inline Vector operator+(Vector a, Vector b) { return {P##add_p##T(a.v, b.v)}; }                                     \
-    inline Vector operator-(Vector a, Vector b) { return {P##sub_p##T(a.v, b.v)}; }                                     \
-    inline Vector operator*(Vector a, Vector b) { return {P##mul_p##T(a.v, b.v)}; }                                     \
-    inline Vector operator/(Vector a, Vector b) { return {P##div_p##T(a.v, b.v)}; }                                     \
-    inline Vector min(Vector a, Vector b) { return {P##min_p##T(a.v, b.v)}; }                                           \
-    inline Vector max(Vector a, Vector b) { return {P##max_p##T(a.v, b.v)}; }                                           \
-    inline Vector sqrt(Vector a) { return {P##sqrt_p##T(a.v)}; }                                                        \
-    inline Vector mul_sub(Vector a, Vector b, Vector c) { return {P##fmsub_p##T(a.v, b.v, c.v)}; }                      \
-    inline Vector neg_mul_add(Vector a, Vector b, Vector c) { return {P##fnmadd_p##T(a.v, b.v, c.v)}; }                 \
-    inline Vector::Mask lt(Vector a, Vector b) { return {P##cmp_p##T##_mask(a.v, b.v, _CMP_LT_OQ)}; }                   \
-    inline Vector::Mask le(Vector a, Vector b) { return {P##cmp_p##T##_mask(a.v, b.v, _CMP_LE_OQ)}; }                   \
+#define GLINT_MASKED_VECTOR(Vector, Register, Scalar, kWidth, P, T, Cmp)                                \
+    struct Vector {                                                                                     \
+        static constexpr int kLanes = kWidth;                                                           \
+        using Mask = BitMask<kWidth>;                                                                   \
+        Register v;                                                                                     \
+        static Vector load(const Scalar* p) { return {P##load_p##T(p)}; }                               \
+        static Vector set(Scalar x) { return {P##set1_p##T(x)}; }                                       \
+        void store(Scalar* p) const { P##storeu_p##T(p, v); }                                           \
+    };                                                                                                  \
+    inline Vector operator+(Vector a, Vector b) { return {P##add_p##T(a.v, b.v)}; }                     \
+    inline Vector operator-(Vector a, Vector b) { return {P##sub_p##T(a.v, b.v)}; }                     \
+    inline Vector operator*(Vector a, Vector b) { return {P##mul_p##T(a.v, b.v)}; }                     \
+    inline Vector operator/(Vector a, Vector b) { return {P##div_p##T(a.v, b.v)}; }                     \
+    inline Vector min(Vector a, Vector b) { return {P##min_p##T(a.v, b.v)}; }                           \
+    inline Vector max(Vector a, Vector b) { return {P##max_p##T(a.v, b.v)}; }                           \
+    inline Vector sqrt(Vector a) { return {P##sqrt_p##T(a.v)}; }                                        \
+    inline Vector mul_sub(Vector a, Vector b, Vector c) { return {P##fmsub_p##T(a.v, b.v, c.v)}; }      \
+    inline Vector neg_mul_add(Vector a, Vector b, Vector c) { return {P##fnmadd_p##T(a.v, b.v, c.v)}; } \
+    inline Vector::Mask lt(Vector a, Vector b) { return {P##cmp_p##T##_mask(a.v, b.v, _CMP_LT_OQ)}; }   \
+    inline Vector::Mask le(Vector a, Vector b) { return {P##cmp_p##T##_mask(a.v, b.v, _CMP_LE_OQ)}; }   \
     inline Vector select(Vector::Mask m, Vector a, Vector b) { return {P##mask_blend_p##T(static_cast<Cmp>(m.m), b.v, a.v)}; }
 
 GLINT_MASKED_VECTOR(Float8, __m256, float, 8, _mm256_, s, __mmask8)
@@ -68,6 +68,9 @@ GLINT_MASKED_VECTOR(Double8, __m512d, double, 8, _mm512_, d, __mmask8)
 inline Float8 abs(Float8 a) { return {_mm256_andnot_ps(_mm256_set1_ps(-0.0f), a.v)}; }
 inline Float16 abs(Float16 a) { return {_mm512_abs_ps(a.v)}; }
 inline Double8 abs(Double8 a) { return {_mm512_abs_pd(a.v)}; }
+inline Float16 copy_sign(Float16 magnitude, Float16 sign) {
+    return {_mm512_or_ps(_mm512_abs_ps(magnitude.v), _mm512_and_ps(_mm512_set1_ps(-0.0f), sign.v))};
+}
 inline Double8 copy_sign(Double8 magnitude, Double8 sign) {
     return {_mm512_or_pd(_mm512_abs_pd(magnitude.v), _mm512_and_pd(_mm512_set1_pd(-0.0), sign.v))};
 }
@@ -115,49 +118,47 @@ struct Twice {
     friend Twice abs(Twice a) { return {abs(a.lo), abs(a.hi)}; }
     friend Twice copy_sign(Twice a, Twice b) { return {copy_sign(a.lo, b.lo), copy_sign(a.hi, b.hi)}; }
     friend Twice mul_sub(Twice a, Twice b, Twice c) { return {mul_sub(a.lo, b.lo, c.lo), mul_sub(a.hi, b.hi, c.hi)}; }
-    friend Twice neg_mul_add(Twice a, Twice b, Twice c) {
-        return {neg_mul_add(a.lo, b.lo, c.lo), neg_mul_add(a.hi, b.hi, c.hi)};
-    }
+    friend Twice neg_mul_add(Twice a, Twice b, Twice c) { return {neg_mul_add(a.lo, b.lo, c.lo), neg_mul_add(a.hi, b.hi, c.hi)}; }
     friend Mask lt(Twice a, Twice b) { return {lt(a.lo, b.lo), lt(a.hi, b.hi)}; }
     friend Mask le(Twice a, Twice b) { return {le(a.lo, b.lo), le(a.hi, b.hi)}; }
     friend Twice select(Mask m, Twice a, Twice b) { return {select(m.lo, a.lo, b.lo), select(m.hi, a.hi, b.hi)}; }
 };
 
 // The lanes' masks as full-width vectors; bits on demand.
-#define GLINT_VECTOR(Vector, Register, Number, kWidth, P, T, LT, LE, MUL_SUB, NEG_MUL_ADD, BITS)                        \
-    struct Vector##Mask {                                                                                               \
-        static constexpr int kLanes = kWidth;                                                                           \
-        Register v;                                                                                                     \
-        static Vector##Mask from_bits(unsigned b) { return {BITS(b)}; }                                                 \
-        [[nodiscard]] unsigned bits() const { return static_cast<unsigned>(P##movemask_p##T(v)); }                      \
-        friend Vector##Mask operator&(Vector##Mask a, Vector##Mask b) { return {P##and_p##T(a.v, b.v)}; }               \
-        friend Vector##Mask operator|(Vector##Mask a, Vector##Mask b) { return {P##or_p##T(a.v, b.v)}; }                \
-        friend Vector##Mask operator-(Vector##Mask a, Vector##Mask b) { return {P##andnot_p##T(b.v, a.v)}; }            \
-    };                                                                                                                  \
-    struct Vector {                                                                                                     \
-        static constexpr int kLanes = kWidth;                                                                           \
-        using Mask = Vector##Mask;                                                                                      \
-        using Scalar = Number;                                                                                          \
-        Register v;                                                                                                     \
-        static Vector load(const Scalar* p) { return {P##load_p##T(p)}; }                                               \
-        static Vector set(Scalar x) { return {P##set1_p##T(x)}; }                                                       \
-        void store(Scalar* p) const { P##storeu_p##T(p, v); }                                                           \
-    };                                                                                                                  \
-    inline Vector operator+(Vector a, Vector b) { return {P##add_p##T(a.v, b.v)}; }                                     \
-    inline Vector operator-(Vector a, Vector b) { return {P##sub_p##T(a.v, b.v)}; }                                     \
-    inline Vector operator*(Vector a, Vector b) { return {P##mul_p##T(a.v, b.v)}; }                                     \
-    inline Vector operator/(Vector a, Vector b) { return {P##div_p##T(a.v, b.v)}; }                                     \
-    inline Vector min(Vector a, Vector b) { return {P##min_p##T(a.v, b.v)}; }                                           \
-    inline Vector max(Vector a, Vector b) { return {P##max_p##T(a.v, b.v)}; }                                           \
-    inline Vector sqrt(Vector a) { return {P##sqrt_p##T(a.v)}; }                                                        \
-    inline Vector abs(Vector a) { return {P##andnot_p##T(P##set1_p##T(-0.0f), a.v)}; }                                  \
-    inline Vector copy_sign(Vector magnitude, Vector sign) {                                                            \
-        const Register bit = P##set1_p##T(-0.0f);                                                                       \
-        return {P##or_p##T(P##andnot_p##T(bit, magnitude.v), P##and_p##T(bit, sign.v))};                                \
-    }                                                                                                                   \
-    inline Vector mul_sub(Vector a, Vector b, Vector c) { return {MUL_SUB}; }                                           \
-    inline Vector neg_mul_add(Vector a, Vector b, Vector c) { return {NEG_MUL_ADD}; }                                   \
-    inline Vector##Mask lt(Vector a, Vector b) { return {LT}; }                                                         \
+#define GLINT_VECTOR(Vector, Register, Number, kWidth, P, T, LT, LE, MUL_SUB, NEG_MUL_ADD, BITS)             \
+    struct Vector##Mask {                                                                                    \
+        static constexpr int kLanes = kWidth;                                                                \
+        Register v;                                                                                          \
+        static Vector##Mask from_bits(unsigned b) { return {BITS(b)}; }                                      \
+        [[nodiscard]] unsigned bits() const { return static_cast<unsigned>(P##movemask_p##T(v)); }           \
+        friend Vector##Mask operator&(Vector##Mask a, Vector##Mask b) { return {P##and_p##T(a.v, b.v)}; }    \
+        friend Vector##Mask operator|(Vector##Mask a, Vector##Mask b) { return {P##or_p##T(a.v, b.v)}; }     \
+        friend Vector##Mask operator-(Vector##Mask a, Vector##Mask b) { return {P##andnot_p##T(b.v, a.v)}; } \
+    };                                                                                                       \
+    struct Vector {                                                                                          \
+        static constexpr int kLanes = kWidth;                                                                \
+        using Mask = Vector##Mask;                                                                           \
+        using Scalar = Number;                                                                               \
+        Register v;                                                                                          \
+        static Vector load(const Scalar* p) { return {P##load_p##T(p)}; }                                    \
+        static Vector set(Scalar x) { return {P##set1_p##T(x)}; }                                            \
+        void store(Scalar* p) const { P##storeu_p##T(p, v); }                                                \
+    };                                                                                                       \
+    inline Vector operator+(Vector a, Vector b) { return {P##add_p##T(a.v, b.v)}; }                          \
+    inline Vector operator-(Vector a, Vector b) { return {P##sub_p##T(a.v, b.v)}; }                          \
+    inline Vector operator*(Vector a, Vector b) { return {P##mul_p##T(a.v, b.v)}; }                          \
+    inline Vector operator/(Vector a, Vector b) { return {P##div_p##T(a.v, b.v)}; }                          \
+    inline Vector min(Vector a, Vector b) { return {P##min_p##T(a.v, b.v)}; }                                \
+    inline Vector max(Vector a, Vector b) { return {P##max_p##T(a.v, b.v)}; }                                \
+    inline Vector sqrt(Vector a) { return {P##sqrt_p##T(a.v)}; }                                             \
+    inline Vector abs(Vector a) { return {P##andnot_p##T(P##set1_p##T(-0.0f), a.v)}; }                       \
+    inline Vector copy_sign(Vector magnitude, Vector sign) {                                                 \
+        const Register bit = P##set1_p##T(-0.0f);                                                            \
+        return {P##or_p##T(P##andnot_p##T(bit, magnitude.v), P##and_p##T(bit, sign.v))};                     \
+    }                                                                                                        \
+    inline Vector mul_sub(Vector a, Vector b, Vector c) { return {MUL_SUB}; }                                \
+    inline Vector neg_mul_add(Vector a, Vector b, Vector c) { return {NEG_MUL_ADD}; }                        \
+    inline Vector##Mask lt(Vector a, Vector b) { return {LT}; }                                              \
     inline Vector##Mask le(Vector a, Vector b) { return {LE}; }
 
 #if defined(__AVX2__)
@@ -198,14 +199,10 @@ GLINT_VECTOR(Float4, __m128, float, 4, _mm_, s, _mm_cmplt_ps(a.v, b.v), _mm_cmpl
              _mm_sub_ps(_mm_mul_ps(a.v, b.v), c.v), _mm_sub_ps(c.v, _mm_mul_ps(a.v, b.v)), mask4_from_bits)
 GLINT_VECTOR(Double2, __m128d, double, 2, _mm_, d, _mm_cmplt_pd(a.v, b.v), _mm_cmple_pd(a.v, b.v),
              _mm_sub_pd(_mm_mul_pd(a.v, b.v), c.v), _mm_sub_pd(c.v, _mm_mul_pd(a.v, b.v)), mask2_from_bits)
-inline Float4 select(Float4Mask m, Float4 a, Float4 b) {
-    return {_mm_or_ps(_mm_and_ps(m.v, a.v), _mm_andnot_ps(m.v, b.v))};
-}
-inline Double2 select(Double2Mask m, Double2 a, Double2 b) {
-    return {_mm_or_pd(_mm_and_pd(m.v, a.v), _mm_andnot_pd(m.v, b.v))};
-}
+inline Float4 select(Float4Mask m, Float4 a, Float4 b) { return {_mm_or_ps(_mm_and_ps(m.v, a.v), _mm_andnot_ps(m.v, b.v))}; }
+inline Double2 select(Double2Mask m, Double2 a, Double2 b) { return {_mm_or_pd(_mm_and_pd(m.v, a.v), _mm_andnot_pd(m.v, b.v))}; }
 using Float8 = Twice<Float4>;
-using Double8 = Twice<Twice<Double2>>;
+using Double8 = Twice<Twice<Double2> >;
 inline Twice<Double2> widen(Float4 a) { return {{_mm_cvtps_pd(a.v)}, {_mm_cvtps_pd(_mm_movehl_ps(a.v, a.v))}}; }
 inline Double8 widen(Float8 a) { return {widen(a.lo), widen(a.hi)}; }
 inline Float4 narrow(Twice<Double2> a) { return {_mm_movelh_ps(_mm_cvtpd_ps(a.lo.v), _mm_cvtpd_ps(a.hi.v))}; }

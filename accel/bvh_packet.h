@@ -1,0 +1,152 @@
+// Sixteen coherent rays through the tree together: at each node the span of the rays rejects what none can meet, then the rays
+// are tested against each child left; in a leaf a primitive meets all rays at once, or a lone ray meets all primitives (in the
+// manner of Wald, Boulos & Shirley 2007 and Overbeck, Ramamoorthi & Mark 2008). Invariant: the answers are those of traverse()
+// for each ray.
+#pragma once
+
+#include "accel/bvh_group.h"
+#include "accel/bvh_single.h"
+
+namespace glint::GLINT_ISA {
+
+// Slabs of sixteen rays against one box.
+class GroupSlabs {
+public:
+    GroupSlabs(const Group& g, Float16 padding) noexcept {
+        const Float16 zero = Float16::set(0.0f);
+        Float16 largest = max(abs(g.d[0]), max(abs(g.d[1]), abs(g.d[2])));
+        const Float16 smallest = largest * Float16::set(0x1p-40f);
+        for (int i = 0; i < 3; ++i) {
+            const Float16 r = Float16::set(1.0f) / copy_sign(max(abs(g.d[i]), smallest), g.d[i]);
+            const Float16 slack = padding * abs(r), shift = g.o[i] * r;
+            reciprocal_[i] = r;
+            near_offset_[i] = shift + slack;
+            far_offset_[i] = shift - slack;
+            const unsigned negative = lt(r, zero).bits();
+            near_row_[i] = 2 * i + (negative != 0 ? 1 : 0);
+            mixed_ |= negative != 0 && negative != 0xffffu;
+        }
+    }
+    // Lanes that may meet child k before `limit`.
+    [[nodiscard]] unsigned operator()(const BvhNode& node, int k, Float16 limit) const noexcept {
+        Float16 near[3], far[3];
+        for (int i = 0; i < 3; ++i) {
+            const Float16 first = Float16::set(node.bounds[near_row_[i]][k]),
+                          last = Float16::set(node.bounds[near_row_[i] ^ 1][k]);
+            near[i] = mul_sub(first, reciprocal_[i], near_offset_[i]);
+            far[i] = mul_sub(last, reciprocal_[i], far_offset_[i]);
+            if (__builtin_expect(mixed_, 0)) {
+                near[i] = min(near[i], mul_sub(last, reciprocal_[i], near_offset_[i]));
+                far[i] = max(far[i], mul_sub(first, reciprocal_[i], far_offset_[i]));
+            }
+        }
+        const Float16 entry = max(max(near[0], near[1]), max(near[2], Float16::set(0.0f)));
+        return le(entry, min(min(far[0], far[1]), min(far[2], limit))).bits();
+    }
+
+private:
+    Float16 reciprocal_[3], near_offset_[3], far_offset_[3];
+    int near_row_[3];
+    bool mixed_ = false;
+};
+
+struct PacketStack {
+    BvhRef ref[kStackSize];
+    float depth[kStackSize];
+    std::uint16_t lanes[kStackSize];
+    int top = 0;
+};
+
+// Depth beyond which no active ray looks.
+inline float end_of(const Group& g, const Span& span) noexcept {
+    const Float16 z = g.o[span.kz] + Float16::load(g.t) * g.d[span.kz];
+    const Float16 depth = span.forward ? z : Float16::set(0.0f) - z;
+    return reduce_max(depth) + span.padding + 0x1p-20f * std::fabs(reduce_max(depth));
+}
+
+// The lanes against the primitives of a leaf that the span leaves.
+template <bool any>
+inline void meet_leaf(BvhRef leaf, const BvhView& bvh, const Span& span, const SpanTest& test, Float8 z_end, unsigned lanes,
+                      Group& g) noexcept {
+    const auto alive = [&] { return any ? lanes & g.active : lanes; };
+    switch (static_cast<PrimitiveKind>(leaf_kind(leaf))) {
+        case PrimitiveKind::triangle: {
+            const auto& b = bvh.at<TriangleBlock>(leaf);
+            for (unsigned m = test.triangles(b, z_end); m != 0 && alive() != 0; m &= m - 1) {
+                const int k = __builtin_ctz(m);
+                if (k == 0 || b.id[k] != b.id[k - 1]) g.meet<any>(b, k, span, alive());
+            }
+            return;
+        }
+        case PrimitiveKind::sphere: {
+            const auto& b = bvh.at<SphereBlock>(leaf);
+            for (int k = 0; k < kBvhWidth && alive() != 0; ++k) {
+                if (k == 0 || b.id[k] != b.id[k - 1]) g.meet<any>(b, k, alive());
+            }
+            return;
+        }
+        case PrimitiveKind::box: {
+            const auto& b = bvh.at<BoxBlock>(leaf);
+            for (int k = 0; k < kBvhWidth && alive() != 0; ++k) {
+                if (k == 0 || b.id[k] != b.id[k - 1]) g.meet<any>(b, k, alive());
+            }
+            return;
+        }
+        default: {
+            const auto& b = bvh.at<ConeBlock>(leaf);
+            for (int k = 0; k < kBvhWidth; ++k) {
+                if (k > 0 && b.id[k] == b.id[k - 1]) continue;
+                for (unsigned m = alive(); m != 0; m &= m - 1) g.decide_alone<any>(__builtin_ctz(m), b.id[k]);
+            }
+        }
+    }
+}
+
+template <bool any>
+inline void traverse_group(const BvhView& bvh, Group& g, const Span& span, const GroupSlabs& slabs, unsigned octant) noexcept {
+    const SpanTest test(span);
+    const unsigned shift = 3 * octant;
+    PacketStack stack;
+    float end = end_of(g, span);
+    BvhRef at = 0;
+    unsigned lanes = g.active;
+    for (;;) {
+        if ((at & kLeafBit) == 0) {
+            const BvhNode& node = bvh.at<BvhNode>(at);
+            Float8 depth;
+            const unsigned mask = test(node.bounds, Float8::set(end), depth);
+            const int before = stack.top;
+            if (mask != 0) {
+                alignas(32) float depths[kBvhWidth];
+                depth.store(depths);
+                const Float16 limit = Float16::load(g.t);
+                for (int i = 0; i < kBvhWidth; ++i) {
+                    const unsigned k = node.order[i] >> shift & 7u;
+                    if ((mask >> k & 1u) == 0) continue;
+                    const unsigned entering = slabs(node, static_cast<int>(k), limit) & lanes;
+                    if (entering == 0) continue;
+                    stack.ref[stack.top] = node.child[k];
+                    stack.depth[stack.top] = depths[k];
+                    stack.lanes[stack.top++] = static_cast<std::uint16_t>(entering);
+                }
+            }
+            if (stack.top != before) {
+                at = stack.ref[--stack.top];
+                lanes = stack.lanes[stack.top];
+                continue;
+            }
+        } else {
+            meet_leaf<any>(at, bvh, span, test, Float8::set(end), lanes, g);
+            if (any && g.active == 0) return;
+            if (!any && g.found != 0) end = end_of(g, span);
+        }
+        do {
+            if (stack.top == 0) return;
+            --stack.top;
+            lanes = any ? stack.lanes[stack.top] & g.active : stack.lanes[stack.top];
+        } while (stack.depth[stack.top] > end || lanes == 0);
+        at = stack.ref[stack.top];
+    }
+}
+
+}  // namespace glint::GLINT_ISA

@@ -1,0 +1,79 @@
+// Gathers sixteen rays of a batch into a group and finds the space that they span.
+// Invariant: gather() says no where the group's arithmetic would not hold for every ray: other dominant axes or signs, unusable
+// rays, numbers beyond float. Such rays go one by one.
+#pragma once
+
+#include "accel/bvh_group.h"
+
+namespace glint::GLINT_ISA {
+
+// Whether all lanes are usable rays (as prepare() says) whose direction is longest along axis k, with one sign.
+inline bool share_axis(const Group& g, int k, bool forward, Float16 largest_origin, Float16 t_max) noexcept {
+    const Float16 a[3] = {abs(g.d[0]), abs(g.d[1]), abs(g.d[2])}, zero = Float16::set(0.0f), most = Float16::set(kLargestT);
+    const auto x_y = le(a[1], a[0]), x_z = le(a[2], a[0]), y_z = le(a[2], a[1]);
+    const auto all = Float16::Mask::from_bits(0xffffu);
+    const auto mine = k == 0 ? x_y & x_z : k == 1 ? y_z - x_y : all - ((x_y & x_z) | (y_z - x_y));
+    const auto sign = forward ? lt(zero, g.d[k]) : lt(g.d[k], zero);
+    const auto finite = le(abs(g.o[0] + g.d[0]), most) & le(abs(g.o[1] + g.d[1]), most) & le(abs(g.o[2] + g.d[2]), most);
+    const auto sized = le(Float16::set(0x1p-86f), a[k]) & le(largest_origin, Float16::set(0x1p87f) * a[k]);
+    return (mine & sign & finite & sized & lt(zero, t_max)).bits() == 0xffffu;
+}
+
+// The planes through the lanes' extreme positions at two depths; between these no ray leaves them, because it runs straight.
+inline bool bound_by_planes(Float16 at_a, Float16 at_b, float za, float zb, float padding, SpanPlane& lo,
+                            SpanPlane& hi) noexcept {
+    const float size = std::fabs(za) < std::fabs(zb) ? std::fabs(zb) : std::fabs(za);
+    const auto plane = [&](float a, float b, float side) {
+        SpanPlane p;
+        p.slope = (b - a) / (zb - za);
+        p.offset = (a - p.slope * za) + side * (padding + kPadding * std::fabs(p.slope) * size);
+        return p;
+    };
+    lo = plane(reduce_min(at_a), reduce_min(at_b), -1.0f);
+    hi = plane(reduce_max(at_a), reduce_max(at_b), 1.0f);
+    return std::fabs(lo.offset) <= kLargestT && std::fabs(hi.offset) <= kLargestT;
+}
+
+// Rays first to first + count - 1 (1 to 16) with limits `t_max`; lanes beyond the count repeat the first.
+inline bool gather(const BvhView& bvh, const RayBatch& rays, int first, int count, Group& g, Span& span,
+                   Float16& padding) noexcept {
+    const auto lanes = Float16::Mask::from_bits((1u << count) - 1u);
+    const auto load = [&](const float* p) { return select(lanes, Float16::load(p + first), Float16::set(p[first])); };
+    for (int i = 0; i < 3; ++i) {
+        g.o[i] = load(rays.origin[i]);
+        g.d[i] = load(rays.direction[i]);
+    }
+    g.batch = &rays;
+    g.first = first;
+    g.bvh = &bvh;
+    const float x = std::fabs(rays.direction[0][first]), y = std::fabs(rays.direction[1][first]),
+                z = std::fabs(rays.direction[2][first]);
+    const int k = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
+    const bool forward = rays.direction[k][first] > 0.0f;
+    const Float16 size = max(max(abs(g.o[0]), abs(g.o[1])), abs(g.o[2])) + Float16::set(bvh.magnitude);
+    if (!share_axis(g, k, forward, size, load(rays.t_max))) return false;
+    span.kz = k;
+    span.kx = k == 2 ? 0 : k + 1;
+    span.ky = span.kx == 2 ? 0 : span.kx + 1;
+    span.forward = forward;
+    g.inverse_z = Float16::set(1.0f) / g.d[k];
+    g.shear_x = g.d[span.kx] * g.inverse_z;
+    g.shear_y = g.d[span.ky] * g.inverse_z;
+    padding = Float16::set(kPadding) * size;
+    span.padding = reduce_max(padding);
+
+    const Float16 depth = forward ? g.o[k] : Float16::set(0.0f) - g.o[k];
+    span.z_start = reduce_min(depth) - span.padding;
+    const float scene_near = (forward ? bvh.lo[k] : -bvh.hi[k]) - span.padding;
+    const float scene_far = (forward ? bvh.hi[k] : -bvh.lo[k]) + span.padding;
+    const float near = span.z_start < scene_near ? scene_near : span.z_start;
+    if (!(near < scene_far)) return false;
+    const float za = span.depth(near), zb = span.depth(scene_far);
+    const auto along = [&](int axis, Float16 shear, float at) { return g.o[axis] + shear * (Float16::set(at) - g.o[k]); };
+    return bound_by_planes(along(span.kx, g.shear_x, za), along(span.kx, g.shear_x, zb), za, zb, span.padding, span.lo_x,
+                           span.hi_x) &&
+           bound_by_planes(along(span.ky, g.shear_y, za), along(span.ky, g.shear_y, zb), za, zb, span.padding, span.lo_y,
+                           span.hi_y);
+}
+
+}  // namespace glint::GLINT_ISA
