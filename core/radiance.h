@@ -1,206 +1,169 @@
-// The integrator: light along one camera ray, read top to bottom. Whitted's model (1980) with the samples of
-// distribution ray tracing (Cook, Porter & Carpenter 1984).
-// Knows no tiles, threads or pixels' sums. Invariant: branches are followed with an explicit stack, so depth is bounded by
-// memory alone; what a part that is compiled out would have done costs nothing, not even a random number.
+// The integrator: light along camera rays, many samples in lockstep, read top to bottom. Whitted's model (1980) with the
+// samples of distribution ray tracing (Cook, Porter & Carpenter 1984); batches as in Boulos et al. 2007, "Packet-based
+// Whitted and Distribution Ray Tracing".
+// Knows no tiles, threads or pixels' sums. Invariant: each sample follows its branches depth first and adds its light in that
+// order, so the answer does not depend on which samples share a batch, to the bit.
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "accel/accelerator.h"
-#include "core/fresnel.h"
-#include "core/ray_counts.h"
-#include "core/render_plan.h"
-#include "core/sampler.h"
-#include "core/scene.h"
-#include "core/surface_point.h"
+#include "core/branching.h"
+#include "core/direct_light.h"
+#include "core/workspace.h"
 
 namespace glint {
 
-// A ray still to be followed.
-struct Branch {
-    Ray ray;
-    glm::vec3 throughput{1.0f};
-    MediumStack medium;
-    std::uint32_t path = 1;  // names this node of the ray tree; random dimensions hang on it
-    int bounces = 0;
-};
-
-// What one worker keeps between samples.
-struct Workspace {
-    std::vector<Branch> stack;
-    RayCounts counts;
-};
-
-// Random dimensions of a camera ray; those of a path node are hash(path, purpose) with the purposes below.
-namespace dimension {
-constexpr std::uint32_t pixel = 0, lens = 1;
-constexpr std::uint32_t fuzz_direction = 0x80000000u, fuzz_radius = 0x80000001u;  // lights take their index
-}  // namespace dimension
-
-// Adds `offset` (in the unit ball) times `radius` to the unit direction `r`. What would go below the surface is mirrored
-// back across the tangent plane, so that no energy is lost; a zero sum gives r.
-[[nodiscard]] inline glm::vec3 fuzzy_direction(glm::vec3 r, glm::vec3 ng, float radius, glm::vec3 offset) {
-    glm::vec3 d = r + radius * offset;
-    const float below = glm::dot(d, ng);
-    if (below < 0.0f) d -= 2.0f * below * ng;
-    const float length2 = glm::dot(d, d);
-    return length2 > 0.0f ? d / std::sqrt(length2) : r;
+// What the rays of a wave have in common. Wave 0 are the camera rays, wave 1 the first bounces of the same lanes: of
+// neighbours, still alike unless they are fuzzy. Later each lane follows branches of its own.
+[[nodiscard]] constexpr RayOrder order_of_wave(int wave, bool lens, bool fuzzy) {
+    if (wave == 0) return lens ? RayOrder::coherent : RayOrder::common_origin;
+    return wave == 1 && !fuzzy ? RayOrder::coherent : RayOrder::divergent;
 }
 
 template <Accelerator A, unsigned kParts>
 class Integrator {
 public:
     Integrator(const Scene& scene, const A& accelerator, const RenderPlan& plan, Workspace& workspace)
-        : scene_(scene), accelerator_(accelerator), plan_(plan), work_(workspace) {}
+        : scene_(scene),
+          accelerator_(accelerator),
+          plan_(plan),
+          work_(workspace),
+          branching_(scene, plan, workspace.stacks, workspace.counts) {}
 
-    [[nodiscard]] glm::vec3 radiance(const Ray& camera_ray, const Sampler& sampler) {
-        ++work_.counts.camera;
-        work_.stack.clear();
-        work_.stack.push_back({camera_ray, glm::vec3(1.0f), plan_.medium, 1, 0});
-        glm::vec3 sum(0.0f);
-        while (!work_.stack.empty()) {
-            const Branch branch = work_.stack.back();
-            work_.stack.pop_back();
-            const Hit hit = accelerator_.closest_hit(branch.ray);
-            if (!hit.found()) {
-                sum += branch.throughput * background(branch.ray.direction);
-                continue;
+    // The light along each camera ray; at most kRayBatch of them. Neighbours in `samples` should be neighbours in the
+    // picture. `stop()` is asked before each wave; false, and no answer, when it said so.
+    template <class Stop>
+    [[nodiscard]] bool radiance(std::span<const CameraSample> samples, std::span<glm::vec3> result, Stop&& stop) {
+        start(samples);
+        for (int wave = 0; !work_.lanes.empty(); ++wave) {
+            if (stop()) return false;
+            trace(order_of_wave(wave, plan_.camera.lens_radius > 0.0f, (kParts & kernel_part::fuzzy) != 0));
+            meet_surfaces();
+            for (std::uint32_t i = 0; i < plan_.lights.size(); ++i) {
+                add_light(i, wave < 2 ? RayOrder::coherent : RayOrder::divergent);
             }
-            const SurfacePoint s = surface_point(scene_, branch.ray, hit);
-            const Material& m = scene_.materials[s.material];
-            const glm::vec3 wo = -branch.ray.direction;
-            sum += branch.throughput * (m.emission + direct_light(s, m, wo, branch.path, sampler));
-            if constexpr ((kParts & kernel_part::mirror) != 0) {
-                if (m.has_mirror()) follow_mirror(branch, s, m, wo, sampler);
-            }
-            if constexpr ((kParts & kernel_part::glass) != 0) {
-                if (m.glass) follow_glass(branch, s, m, wo);
-            }
+            go_on();
+            retire(result);
         }
-        return sum;
+        return true;
     }
 
 private:
+    void start(std::span<const CameraSample> samples) {
+        work_.counts.camera += samples.size();
+        work_.stacks.clear();
+        work_.stacks.make_room(samples.size());
+        work_.lanes.clear();
+        for (const CameraSample& sample : samples) {
+            Lane& lane = work_.lanes.emplace_back(Lane{sample.sampler});
+            lane.sample = static_cast<std::uint32_t>(work_.lanes.size() - 1);
+            work_.stacks.push(lane.top, {sample.ray.origin, sample.ray.direction});
+            if constexpr ((kParts & kernel_part::glass) != 0) work_.stacks.medium(lane.top) = plan_.medium;
+        }
+    }
+
+    // Follows the top branch of every lane to the first surface.
+    void trace(RayOrder order) {
+        work_.rays.clear(order);
+        for (const Lane& lane : work_.lanes) {
+            const Branch& branch = work_.stacks[lane.top];
+            work_.rays.push({branch.origin, branch.direction, kInfinity});
+        }
+        accelerator_.closest_hits(work_.rays, work_.hits);
+    }
+
+    // Adds the background to lanes whose ray has left the scene, and lists the vertices of the others.
+    void meet_surfaces() {
+        work_.vertices.clear();
+        for (std::uint32_t i = 0; i < work_.lanes.size(); ++i) {
+            Lane& lane = work_.lanes[i];
+            const Branch& branch = work_.stacks[lane.top];
+            const Hit hit = work_.hits[static_cast<int>(i)];
+            if (!hit.found()) {
+                lane.sum += branch.throughput * background(branch.direction);
+                const std::uint32_t below = branch.below;
+                work_.stacks.release(lane.top);
+                lane.top = below;
+                continue;
+            }
+            Vertex& v = work_.vertices.emplace_back();
+            v.s = surface_point(scene_, {branch.origin, branch.direction, kInfinity}, hit);
+            v.wo = -branch.direction;
+            v.shadow_origin = spawn_origin(v.s, v.s.ng);
+            v.direct = glm::vec3(0.0f);
+            v.lane = i;
+        }
+    }
+
     [[nodiscard]] glm::vec3 background(glm::vec3 d) const {
         return plan_.background_is_color ? scene_.environment.color : scene_.environment.radiance(d);
     }
 
-    // Blinn-Phong (Blinn 1977) under every light, one shadow ray each and only where the light would show.
-    [[nodiscard]] glm::vec3 direct_light(const SurfacePoint& s, const Material& m, glm::vec3 wo, std::uint32_t path,
-                                         const Sampler& sampler) {
-        const bool highlight = plan_.highlights && m.has_highlight();
-        glm::vec3 sum(0.0f);
-        if (!highlight && !m.has_diffuse()) return sum;
-        for (std::uint32_t i = 0; i < plan_.lights.size(); ++i) {
-            const Light& light = plan_.lights[i];
+    // Adds light i to all vertices that it reaches, with one shadow ray each and only where it would show.
+    void add_light(std::uint32_t i, RayOrder order) {
+        const Light& light = plan_.lights[i];
+        RayBatch& rays = work_.shadow_rays;
+        rays.clear(order);
+        for (std::uint32_t k = 0; k < work_.vertices.size(); ++k) {
+            Vertex& v = work_.vertices[k];
+            const Material& m = scene_.materials[v.s.material];
+            const bool highlight = plan_.highlights && m.has_highlight();
+            if (!highlight && !m.has_diffuse()) continue;
             glm::vec2 u(0.5f);
             if constexpr ((kParts & kernel_part::soft) != 0) {
-                if (light.has_area()) u = sampler.square(hash(path, i));
+                const Lane& lane = work_.lanes[v.lane];
+                if (light.has_area()) u = lane.sampler.square(hash(work_.stacks[lane.top].path, i));
             }
-            const LightSample l = sample_light(light, s.p, u);
-            const float n_l = glm::dot(s.ns, l.wi);
-            // Both terms need the light above the surface; a highlight on the dark side is a classic slip.
-            if (!(n_l > 0.0f) || !(glm::dot(s.ng, l.wi) > 0.0f)) continue;
-            glm::vec3 reflectance = m.diffuse * n_l;
-            if (highlight) {
-                const glm::vec3 h = wo + l.wi;
-                const float h2 = glm::dot(h, h);
-                const float n_h = h2 > 0.0f ? glm::dot(s.ns, h) / std::sqrt(h2) : 0.0f;
-                if (n_h > 0.0f) reflectance += m.specular * (m.highlight_scale * std::pow(n_h, m.shininess));
+            const LightSample l = sample_light(light, v.s.p, u);
+            const glm::vec3 light_in = reflected_light(l, v.s, m, v.wo, highlight);
+            if (light_in == glm::vec3(0.0f)) continue;
+            if (!plan_.shadows) {
+                v.direct += light_in;
+                continue;
             }
-            const glm::vec3 light_in = l.arriving * reflectance;
-            if (light_in == glm::vec3(0.0f) || (plan_.shadows && shadowed(s, light, l))) continue;
-            sum += light_in;
+            const auto n = static_cast<std::size_t>(rays.count);
+            work_.shadow_light[n] = light_in;
+            work_.shadow_vertex[n] = k;
+            rays.push(shadow_ray(light, l, v.shadow_origin));
         }
-        return sum;
-    }
-
-    [[nodiscard]] bool shadowed(const SurfacePoint& s, const Light& light, const LightSample& l) {
-        ++work_.counts.shadow;
-        Ray ray;
-        ray.origin = spawn_origin(s, s.ng);
-        if (l.at_infinity) {
-            ray.direction = l.wi;
-        } else {
-            ray.direction = l.point - ray.origin;
-            ray.t_max = shadow_reach(light, ray.origin, ray.direction);
-        }
-        return accelerator_.occluded(ray);
-    }
-
-    // Pushes the ray unless its weight is 0 or the depth limit is reached; the latter is counted.
-    void follow(const Branch& from, const SurfacePoint& s, glm::vec3 side, glm::vec3 direction, glm::vec3 weight,
-                const MediumStack& medium, std::uint32_t branch_index, std::uint64_t& counter) {
-        const glm::vec3 throughput = from.throughput * weight;
-        const float largest = std::max(throughput.x, std::max(throughput.y, throughput.z));
-        if (!(largest > 0.0f)) return;
-        if (from.bounces >= plan_.depth) {
-            ++work_.counts.depth_cut;
-            work_.counts.depth_cut_weight += static_cast<double>(largest);
-            return;
-        }
-        ++counter;
-        work_.stack.push_back({Ray{spawn_origin(s, side), direction, kInfinity}, throughput, medium,
-                               hash(from.path, branch_index + 0x40000000u), from.bounces + 1});
-    }
-
-    void follow_mirror(const Branch& branch, const SurfacePoint& s, const Material& m, glm::vec3 wo, const Sampler& sampler) {
-        glm::vec3 direction = above(reflect(wo, s.ns), s);
-        if constexpr ((kParts & kernel_part::fuzzy) != 0) {
-            const float radius = plan_.fuzz(m);
-            if (radius > 0.0f) {
-                // Uniform in the unit ball: the radius is the cube root of a uniform number.
-                const float r = std::cbrt(sampler.interval(hash(branch.path, dimension::fuzz_radius)));
-                const glm::vec3 offset = r * sphere_from_square(sampler.square(hash(branch.path, dimension::fuzz_direction)));
-                direction = fuzzy_direction(glm::normalize(direction), s.ng, radius, offset);
-            }
-        }
-        glm::vec3 weight = m.mirror;
-        if (m.mirror_fresnel) {
-            const float c = 1.0f - std::min(1.0f, glm::dot(wo, s.ns)), c2 = c * c;
-            weight += (1.0f - weight) * (c2 * c2 * c);
-        }
-        follow(branch, s, s.ng, direction, weight, branch.medium, 0, work_.counts.reflection);
-    }
-
-    void follow_glass(const Branch& branch, const SurfacePoint& s, const Material& m, glm::vec3 wo) {
-        MediumStack beyond = branch.medium;
-        float ior_from = ior_of(branch.medium.top());
-        if (s.outside) {
-            beyond.enter(s.material);
-        } else {
-            // A surface left from a medium that was never entered: that of the surface itself.
-            if (!branch.medium.contains(s.material)) ior_from = m.ior;
-            beyond.leave(s.material);
-        }
-        const double eta = static_cast<double>(ior_from) / static_cast<double>(ior_of(beyond.top()));
-        const double cos_i = std::min(1.0, static_cast<double>(glm::dot(wo, s.ns)));
-        const double reflected = plan_.fresnel == Fresnel::exact ? fresnel_dielectric(cos_i, eta) : fresnel_schlick(cos_i, eta);
-        if (plan_.refractions && transmitted_cos2(cos_i, eta) > 0.0) {
-            const glm::vec3 weight = m.transmittance * static_cast<float>(1.0 - reflected);
-            follow(branch, s, -s.ng, refract(wo, s.ns, eta), weight, beyond, 1, work_.counts.refraction);
-        }
-        if (plan_.reflections && reflected > 0.0) {
-            follow(branch, s, s.ng, above(reflect(wo, s.ns), s), glm::vec3(static_cast<float>(reflected)), branch.medium, 0,
-                   work_.counts.reflection);
+        if (rays.count == 0) return;
+        work_.counts.shadow += static_cast<std::uint64_t>(rays.count);
+        accelerator_.occluded(rays, work_.blocked);
+        for (std::size_t n = 0; n < static_cast<std::size_t>(rays.count); ++n) {
+            if (!work_.blocked[n]) work_.vertices[work_.shadow_vertex[n]].direct += work_.shadow_light[n];
         }
     }
 
-    // An interpolated normal can mirror a ray into the surface; it is then mirrored back across the tangent plane.
-    [[nodiscard]] static glm::vec3 above(glm::vec3 direction, const SurfacePoint& s) {
-        const float below = glm::dot(direction, s.ng);
-        return below < 0.0f ? direction - 2.0f * below * s.ng : direction;
+    // Adds each vertex's light to its lane, and puts the branches that go on from there in place of the one that came.
+    void go_on() {
+        work_.stacks.make_room(work_.vertices.size() * Branching<kParts>::kMaxChildren);
+        for (const Vertex& v : work_.vertices) {
+            Lane& lane = work_.lanes[v.lane];
+            const Material& m = scene_.materials[v.s.material];
+            lane.sum += work_.stacks[lane.top].throughput * (m.emission + v.direct);
+            branching_.replace(lane.top, v.s, m, v.wo, lane.sampler);
+        }
     }
 
-    [[nodiscard]] float ior_of(std::uint32_t medium) const {
-        return medium == MediumStack::kAir ? 1.0f : scene_.materials[medium].ior;
+    // Hands out the sums of lanes without branches and closes the ranks.
+    void retire(std::span<glm::vec3> result) {
+        std::size_t kept = 0;
+        for (const Lane& lane : work_.lanes) {
+            if (lane.top == BranchStacks::kEmpty)
+                result[lane.sample] = lane.sum;
+            else
+                work_.lanes[kept++] = lane;
+        }
+        work_.lanes.erase(work_.lanes.begin() + static_cast<std::ptrdiff_t>(kept), work_.lanes.end());
     }
 
     const Scene& scene_;
     const A& accelerator_;
     const RenderPlan& plan_;
     Workspace& work_;
+    Branching<kParts> branching_;
 };
 
 }  // namespace glint

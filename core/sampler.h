@@ -27,6 +27,7 @@ constexpr std::uint32_t kStrata = 8;
 
 class Sampler {
 public:
+    Sampler() = default;
     Sampler(SamplerKind kind, std::uint32_t x, std::uint32_t y, std::uint64_t index, std::uint64_t seed)
         : kind_(kind),
           index_(static_cast<std::uint32_t>(index)),
@@ -39,9 +40,9 @@ public:
     [[nodiscard]] float interval(std::uint32_t dimension) const noexcept;
 
 private:
-    SamplerKind kind_;
-    std::uint32_t index_;
-    std::uint32_t pixel_;
+    SamplerKind kind_ = SamplerKind::sobol;
+    std::uint32_t index_ = 0;
+    std::uint32_t pixel_ = 0;
 };
 
 // Area-preserving maps of the unit square; they keep strata together.

@@ -1,19 +1,21 @@
 #include "core/tile_kernels.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace glint {
 namespace {
 
-// Radiance of sample `index` of the pixel, at the position that its sampler (or the pixel's centre) gives.
-template <class I>
-glm::vec3 pixel_sample(I& integrator, const KernelInput& in, int x, int y, std::uint64_t index, glm::vec2 centre) {
+// The camera ray of sample `index` of the pixel, at the position that its sampler (or the pixel's centre) gives.
+CameraSample camera_sample(const KernelInput& in, int x, int y, std::uint64_t index) {
     const Sampler sampler(in.plan.sampler, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), index, in.plan.seed);
-    const glm::vec2 jitter = in.plan.jitter ? sampler.square(dimension::pixel) : centre;
+    const glm::vec2 jitter = in.plan.jitter ? sampler.square(dimension::pixel) : glm::vec2(0.5f);
     const glm::vec2 lens = in.camera.has_lens() ? disk_from_square(sampler.square(dimension::lens)) : glm::vec2(0.0f);
-    return integrator.radiance(in.camera.ray(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y, lens), sampler);
+    return {in.camera.ray(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y, lens), sampler};
 }
 
 bool finite(glm::vec3 c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
@@ -27,36 +29,94 @@ struct Job {
     Workspace& work;
 };
 
+// Every second bit of a number, the lowest first, closed up.
+unsigned even_bits(unsigned m) {
+    unsigned x = 0;
+    for (unsigned bit = 0; m >> (2 * bit) != 0; ++bit) x |= ((m >> (2 * bit)) & 1u) << bit;
+    return x;
+}
+
+// Calls visit(x, y) for each cell of a width x height grid along the Z curve (Morton 1966): any 4^n cells in a row from a
+// multiple of 4^n on are a square, whose rays go about the same way.
+template <class Visit>
+void along_z_curve(int width, int height, Visit&& visit) {
+    const unsigned side = std::bit_ceil(static_cast<unsigned>(std::max({1, width, height})));
+    for (unsigned m = 0; m < side * side; ++m) {
+        const int x = static_cast<int>(even_bits(m)), y = static_cast<int>(even_bits(m >> 1));
+        if (x < width && y < height) visit(x, y);
+    }
+}
+
+// Gathers samples into batches, traces them, and hands each answer to take(cell, radiance) in the order they came in.
+template <class A, unsigned kParts, class Take>
+class Batcher {
+public:
+    Batcher(const Job& job, Take take)
+        : in_(job.in), integrator_(in_.scene, std::get<A>(in_.accelerator), in_.plan, job.work), take_(take) {}
+
+    void add(std::size_t cell, int x, int y, std::uint64_t index) {
+        if (stopped_) return;
+        cells_[count_] = cell;
+        samples_[count_++] = camera_sample(in_, x, y, index);
+        if (count_ == samples_.size()) flush();
+    }
+    // Traces what has been gathered. False when the frame is not wanted any more.
+    bool flush() {
+        const auto stale = [this] { return in_.current_generation.load(std::memory_order_relaxed) != in_.generation; };
+        stopped_ = stopped_ || !integrator_.radiance(std::span(samples_).first(count_), radiance_, stale);
+        for (std::size_t i = 0; i < count_ && !stopped_; ++i) take_(cells_[i], radiance_[i]);
+        count_ = 0;
+        return !stopped_;
+    }
+
+private:
+    const KernelInput& in_;
+    Integrator<A, kParts> integrator_;
+    Take take_;
+    bool stopped_ = false;
+    std::size_t count_ = 0;
+    std::array<std::size_t, kRayBatch> cells_;
+    std::array<CameraSample, kRayBatch> samples_;
+    std::array<glm::vec3, kRayBatch> radiance_;
+};
+
+template <class A, unsigned kParts>
+bool run_preview(const Job& job) {
+    const auto take = [&](std::size_t cell, glm::vec3 c) { (*job.preview)[cell] = finite(c) ? c : glm::vec3(0.0f); };
+    Batcher<A, kParts, decltype(take)> batcher(job, take);
+    const TileRect& r = job.rect;
+    const int columns = preview_blocks(r.x1 - r.x0), rows = preview_blocks(r.y1 - r.y0);
+    along_z_curve(columns, rows, [&](int i, int j) {
+        const int x = std::min(r.x0 + i * kPreviewBlock + kPreviewBlock / 2, r.x1 - 1);
+        const int y = std::min(r.y0 + j * kPreviewBlock + kPreviewBlock / 2, r.y1 - 1);
+        batcher.add(static_cast<std::size_t>(j * columns + i), x, y, 0);
+    });
+    return batcher.flush();
+}
+
 template <class A, unsigned kParts>
 bool run(const Job& job) {
-    const KernelInput& in = job.in;
-    Integrator<A, kParts> integrator(in.scene, std::get<A>(in.accelerator), in.plan, job.work);
-    const int step = job.sums != nullptr ? 1 : kPreviewBlock;
-    std::size_t i = 0;
-    for (int y = job.rect.y0; y < job.rect.y1; y += step) {
-        for (int x = job.rect.x0; x < job.rect.x1; x += step, ++i) {
-            if (in.current_generation.load(std::memory_order_relaxed) != in.generation) return false;
-            if (job.sums == nullptr) {
-                const int cx = std::min(x + step / 2, job.rect.x1 - 1), cy = std::min(y + step / 2, job.rect.y1 - 1);
-                const glm::vec3 c = pixel_sample(integrator, in, cx, cy, 0, glm::vec2(0.5f));
-                (*job.preview)[i] = finite(c) ? c : glm::vec3(0.0f);
-                continue;
-            }
-            PixelSum& sum = (*job.sums)[i];
-            for (int k = job.first; k < job.last; ++k) {
-                const glm::vec3 c = pixel_sample(integrator, in, x, y, static_cast<std::uint64_t>(k), glm::vec2(0.5f));
-                if (!finite(c)) {
-                    ++job.work.counts.non_finite;
-                    ++sum.rejected;
-                    continue;
-                }
-                const double l = luminance(glm::dvec3(c));
-                sum.radiance += glm::dvec3(c);
-                sum.luminance2 += l * l;
-            }
+    if (job.sums == nullptr) return run_preview<A, kParts>(job);
+    const auto take = [&](std::size_t pixel, glm::vec3 c) {
+        PixelSum& sum = (*job.sums)[pixel];
+        if (!finite(c)) {
+            ++job.work.counts.non_finite;
+            ++sum.rejected;
+            return;
         }
-    }
-    return true;
+        const double l = luminance(glm::dvec3(c));
+        sum.radiance += glm::dvec3(c);
+        sum.luminance2 += l * l;
+    };
+    Batcher<A, kParts, decltype(take)> batcher(job, take);
+    const TileRect& r = job.rect;
+    const int width = r.x1 - r.x0;
+    // The samples of a pixel are the most alike of all, so they stay together; and their sums need them in this order.
+    along_z_curve(width, r.y1 - r.y0, [&](int i, int j) {
+        const auto pixel = static_cast<std::size_t>(j * width + i);
+        for (int k = job.first; k < job.last; ++k) batcher.add(pixel, r.x0 + i, r.y0 + j, static_cast<std::uint64_t>(k));
+    });
+    return batcher.flush();
 }
 
 using Kernel = bool (*)(const Job&);

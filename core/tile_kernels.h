@@ -1,5 +1,5 @@
-// The integrator's instances by accelerator and parts, and the loop over a tile's pixels that each is entered through.
-// Knows no threads; a kernel looks at a generation counter between pixels and gives up when it moved on.
+// The integrator's instances by accelerator and parts, and the walk over a tile's pixels that fills its batches.
+// Knows no threads; a kernel looks at a generation counter before each wave of a batch and gives up when it moved on.
 #pragma once
 
 #include <atomic>

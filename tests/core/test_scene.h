@@ -7,6 +7,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <memory>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -182,7 +183,8 @@ private:
         glm::vec3 light(0.0f);
         const auto run = [&](auto part) {
             Integrator<RecordingAccelerator, instance_parts(part)> integrator(*scene_, accelerator_, plan, work_);
-            light = integrator.radiance(ray, sampler);
+            const CameraSample sample{ray, sampler};
+            EXPECT_TRUE(integrator.radiance(std::span(&sample, 1), std::span(&light, 1), [] { return false; }));
         };
         ((plan.kernel == kParts ? run(std::integral_constant<unsigned, kParts>()) : void()), ...);
         return light;

@@ -1,0 +1,43 @@
+// Light that reaches a surface straight from a source and is reflected by it, and the ray that asks whether it does.
+// Knows no accelerator, no branches and no random numbers.
+#pragma once
+
+#include <cmath>
+
+#include "accel/ray.h"
+#include "core/light.h"
+#include "core/material.h"
+#include "core/surface_point.h"
+
+namespace glint {
+
+// Blinn-Phong (Blinn 1977): the light of `l` that leaves towards `wo`; black where it would not show.
+[[nodiscard]] inline glm::vec3 reflected_light(const LightSample& l, const SurfacePoint& s, const Material& m, glm::vec3 wo,
+                                               bool highlight) {
+    const float n_l = glm::dot(s.ns, l.wi);
+    // Both terms need the light above the surface; a highlight on the dark side is a classic slip.
+    if (!(n_l > 0.0f) || !(glm::dot(s.ng, l.wi) > 0.0f)) return glm::vec3(0.0f);
+    glm::vec3 reflectance = m.diffuse * n_l;
+    if (highlight) {
+        const glm::vec3 h = wo + l.wi;
+        const float h2 = glm::dot(h, h);
+        const float n_h = h2 > 0.0f ? glm::dot(s.ns, h) / std::sqrt(h2) : 0.0f;
+        if (n_h > 0.0f) reflectance += m.specular * (m.highlight_scale * std::pow(n_h, m.shininess));
+    }
+    return l.arriving * reflectance;
+}
+
+// The ray from `origin`, where rays leave the surface, to the sampled point of the light.
+[[nodiscard]] inline Ray shadow_ray(const Light& light, const LightSample& l, glm::vec3 origin) {
+    Ray ray;
+    ray.origin = origin;
+    if (l.at_infinity) {
+        ray.direction = l.wi;
+    } else {
+        ray.direction = l.point - origin;
+        ray.t_max = shadow_reach(light, origin, ray.direction);
+    }
+    return ray;
+}
+
+}  // namespace glint
