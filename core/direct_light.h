@@ -27,17 +27,14 @@ namespace glint {
     return l.arriving * reflectance;
 }
 
-// The ray from `origin`, where rays leave the surface, to the sampled point of the light.
-[[nodiscard]] inline Ray shadow_ray(const Light& light, const LightSample& l, glm::vec3 origin) {
-    Ray ray;
-    ray.origin = origin;
-    if (l.at_infinity) {
-        ray.direction = l.wi;
-    } else {
-        ray.direction = l.point - origin;
-        ray.t_max = shadow_reach(light, origin, ray.direction);
-    }
-    return ray;
+// The ray that asks whether the sampled point of the light is seen from `s`. From a light whose rays start at it (see
+// shadow_origins.h) they all have one origin, which lets an accelerator trace them together.
+[[nodiscard]] inline Ray shadow_ray(const Light& light, const LightSample& l, const SurfacePoint& s, bool starts_at_light) {
+    if (starts_at_light) return {light.position, direction_to(s, light.position), 1.0f};
+    const glm::vec3 origin = spawn_origin(s, s.ng);
+    if (l.at_infinity) return {origin, l.wi, kInfinity};
+    const glm::vec3 direction = l.point - origin;
+    return {origin, direction, shadow_reach(light, origin, direction)};
 }
 
 }  // namespace glint

@@ -30,6 +30,7 @@ struct Light {
     glm::vec3 emission{1.0f};
 
     bool operator==(const Light&) const = default;
+    [[nodiscard]] bool is_true_point() const { return shape == Shape::point && edge1 == glm::vec3(0.0f); }
     [[nodiscard]] bool has_area() const {
         return shape == Shape::quad || shape == Shape::sphere || (shape == Shape::point && edge1 != glm::vec3(0.0f));
     }

@@ -22,6 +22,12 @@ namespace glint {
     return wave == 1 && !fuzzy ? RayOrder::coherent : RayOrder::divergent;
 }
 
+// The same of the shadow rays of a wave towards one light.
+[[nodiscard]] constexpr RayOrder order_of_shadows(int wave, bool start_at_light) {
+    if (start_at_light) return RayOrder::common_origin;
+    return wave < 2 ? RayOrder::coherent : RayOrder::divergent;
+}
+
 template <Accelerator A, unsigned kParts>
 class Integrator {
 public:
@@ -31,6 +37,9 @@ public:
           plan_(plan),
           work_(workspace),
           branching_(scene, plan, workspace.stacks, workspace.counts) {}
+
+    // To be called once for each plan and workspace, before radiance().
+    void prepare() { work_.shadow_origins.decide(scene_.geometry, plan_.lights, accelerator_); }
 
     // The light along each camera ray; at most kRayBatch of them. Neighbours in `samples` should be neighbours in the
     // picture. `stop()` is asked before each wave; false, and no answer, when it said so.
@@ -42,7 +51,7 @@ public:
             trace(order_of_wave(wave, plan_.camera.lens_radius > 0.0f, (kParts & kernel_part::fuzzy) != 0));
             meet_surfaces();
             for (std::uint32_t i = 0; i < plan_.lights.size(); ++i) {
-                add_light(i, wave < 2 ? RayOrder::coherent : RayOrder::divergent);
+                add_light(i, wave);
             }
             go_on();
             retire(result);
@@ -91,7 +100,9 @@ private:
             Vertex& v = work_.vertices.emplace_back();
             v.s = surface_point(scene_, {branch.origin, branch.direction, kInfinity}, hit);
             v.wo = -branch.direction;
-            v.shadow_origin = spawn_origin(v.s, v.s.ng);
+            v.material = &scene_.materials[v.s.material];
+            v.highlight = plan_.highlights && v.material->has_highlight();
+            v.lit = v.highlight || v.material->has_diffuse();
             v.direct = glm::vec3(0.0f);
             v.lane = i;
         }
@@ -102,22 +113,21 @@ private:
     }
 
     // Adds light i to all vertices that it reaches, with one shadow ray each and only where it would show.
-    void add_light(std::uint32_t i, RayOrder order) {
+    void add_light(std::uint32_t i, int wave) {
         const Light& light = plan_.lights[i];
+        const bool at_light = work_.shadow_origins.at_light(i);
         RayBatch& rays = work_.shadow_rays;
-        rays.clear(order);
+        rays.clear(order_of_shadows(wave, at_light));
         for (std::uint32_t k = 0; k < work_.vertices.size(); ++k) {
             Vertex& v = work_.vertices[k];
-            const Material& m = scene_.materials[v.s.material];
-            const bool highlight = plan_.highlights && m.has_highlight();
-            if (!highlight && !m.has_diffuse()) continue;
+            if (!v.lit) continue;
             glm::vec2 u(0.5f);
             if constexpr ((kParts & kernel_part::soft) != 0) {
                 const Lane& lane = work_.lanes[v.lane];
                 if (light.has_area()) u = lane.sampler.square(hash(work_.stacks[lane.top].path, i));
             }
             const LightSample l = sample_light(light, v.s.p, u);
-            const glm::vec3 light_in = reflected_light(l, v.s, m, v.wo, highlight);
+            const glm::vec3 light_in = reflected_light(l, v.s, *v.material, v.wo, v.highlight);
             if (light_in == glm::vec3(0.0f)) continue;
             if (!plan_.shadows) {
                 v.direct += light_in;
@@ -126,7 +136,7 @@ private:
             const auto n = static_cast<std::size_t>(rays.count);
             work_.shadow_light[n] = light_in;
             work_.shadow_vertex[n] = k;
-            rays.push(shadow_ray(light, l, v.shadow_origin));
+            rays.push(shadow_ray(light, l, v.s, at_light));
         }
         if (rays.count == 0) return;
         work_.counts.shadow += static_cast<std::uint64_t>(rays.count);
@@ -141,9 +151,8 @@ private:
         work_.stacks.make_room(work_.vertices.size() * Branching<kParts>::kMaxChildren);
         for (const Vertex& v : work_.vertices) {
             Lane& lane = work_.lanes[v.lane];
-            const Material& m = scene_.materials[v.s.material];
-            lane.sum += work_.stacks[lane.top].throughput * (m.emission + v.direct);
-            branching_.replace(lane.top, v.s, m, v.wo, lane.sampler);
+            lane.sum += work_.stacks[lane.top].throughput * (v.material->emission + v.direct);
+            branching_.replace(lane.top, v.s, *v.material, v.wo, lane.sampler);
         }
     }
 

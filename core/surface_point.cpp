@@ -106,6 +106,10 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) n
     // p and the spawned origin are each rounded once per coordinate (2 units in the 1-norm of n, at most 2 * 1.75);
     // a float triangle test errs by about 8 units of the distances it subtracts.
     s.error = static_cast<float>(kUlp * (4.0 * largest(e.p) + 8.0 * e.reach));
+    // A ray that comes from a distance D (largest coordinate) and ends at t = 1: its direction is rounded twice in
+    // direction_to() and the hit's t once, each by a unit of the direction's length, so by at most sqrt(3) D along n: 6 units
+    // of D. A triangle test now subtracts distances up to reach + D, with the same 8 units as above.
+    s.error_from_afar = static_cast<float>(kUlp * (e.reach > 0.0 ? 14.0 : 6.0));
     return s;
 }
 

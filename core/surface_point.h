@@ -3,6 +3,8 @@
 // spawn_origin() on the side of its normal cannot hit the surface it leaves.
 #pragma once
 
+#include <algorithm>
+
 #include <glm/glm.hpp>
 
 #include "core/scene.h"
@@ -11,10 +13,11 @@ namespace glint {
 
 struct SurfacePoint {
     glm::vec3 p;
-    glm::vec3 ng;  // geometric normal, unit, on the side of wo
-    glm::vec3 ns;  // shading normal, unit, in the hemisphere of ng
-    bool outside;  // wo is on the outer side (the winding's front)
-    float error;   // how far a later intersection may misjudge the surface's position, scene units
+    glm::vec3 ng;           // geometric normal, unit, on the side of wo
+    glm::vec3 ns;           // shading normal, unit, in the hemisphere of ng
+    bool outside;           // wo is on the outer side (the winding's front)
+    float error;            // how far a later intersection may misjudge the surface's position, scene units
+    float error_from_afar;  // what is added for each unit of distance (largest coordinate) that a ray comes from
     std::uint32_t material;
 };
 
@@ -24,6 +27,13 @@ struct SurfacePoint {
 // The origin for a ray that leaves towards the side of the unit vector `n`.
 [[nodiscard]] inline glm::vec3 spawn_origin(const SurfacePoint& s, glm::vec3 n) noexcept {
     return glm::vec3(glm::dvec3(s.p) + static_cast<double>(s.error) * glm::dvec3(n));
+}
+
+// The direction from `start` to where rays leave the surface on the side of `ng`, so that a ray with t_max = 1 reaches all
+// that lies before the surface and never the surface itself.
+[[nodiscard]] inline glm::vec3 direction_to(const SurfacePoint& s, glm::vec3 start) noexcept {
+    const glm::vec3 d = s.p - start, size = glm::abs(d);
+    return d + (s.error + s.error_from_afar * std::max(size.x, std::max(size.y, size.z))) * s.ng;
 }
 
 }  // namespace glint

@@ -52,7 +52,11 @@ template <class A, unsigned kParts, class Take>
 class Batcher {
 public:
     Batcher(const Job& job, Take take)
-        : in_(job.in), integrator_(in_.scene, std::get<A>(in_.accelerator), in_.plan, job.work), take_(take) {}
+        : in_(job.in), integrator_(in_.scene, std::get<A>(in_.accelerator), in_.plan, job.work), take_(take) {
+        if (job.work.prepared_for == in_.generation) return;
+        integrator_.prepare();
+        job.work.prepared_for = in_.generation;
+    }
 
     void add(std::size_t cell, int x, int y, std::uint64_t index) {
         if (stopped_) return;

@@ -6,8 +6,10 @@
 
 #include "accel/ray_batch.h"
 #include "core/branch_stacks.h"
+#include "core/material.h"
 #include "core/ray_counts.h"
 #include "core/sampler.h"
+#include "core/shadow_origins.h"
 #include "core/surface_point.h"
 
 namespace glint {
@@ -30,13 +32,16 @@ struct Lane {
 struct Vertex {
     SurfacePoint s;
     glm::vec3 wo;
-    glm::vec3 shadow_origin;  // where rays that leave s towards lights start
-    glm::vec3 direct;         // light arriving straight from the lights, reflected
+    const Material* material;
+    bool highlight, lit;  // whether the material shows highlights, or any light of a source
+    glm::vec3 direct;     // light arriving straight from the lights, reflected
     std::uint32_t lane;
 };
 
 struct Workspace {
     RayCounts counts;
+    ShadowOrigins shadow_origins;
+    std::uint64_t prepared_for = ~std::uint64_t{0};  // the generation whose lights they are of
     BranchStacks stacks;
     std::vector<Lane> lanes;
     std::vector<Vertex> vertices;

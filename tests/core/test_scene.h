@@ -183,6 +183,8 @@ private:
         glm::vec3 light(0.0f);
         const auto run = [&](auto part) {
             Integrator<RecordingAccelerator, instance_parts(part)> integrator(*scene_, accelerator_, plan, work_);
+            integrator.prepare();
+            accelerator_.shadow_rays.clear();
             const CameraSample sample{ray, sampler};
             EXPECT_TRUE(integrator.radiance(std::span(&sample, 1), std::span(&light, 1), [] { return false; }));
         };
