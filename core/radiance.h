@@ -66,7 +66,10 @@ private:
         work_.stacks.make_room(samples.size());
         work_.lanes.clear();
         for (const CameraSample& sample : samples) {
-            Lane& lane = work_.lanes.emplace_back(Lane{sample.sampler});
+            Lane& lane = work_.lanes.add();
+            lane.sampler = sample.sampler;
+            lane.sum = glm::vec3(0.0f);
+            lane.top = BranchStacks::kEmpty;
             lane.sample = static_cast<std::uint32_t>(work_.lanes.size() - 1);
             work_.stacks.push(lane.top, {sample.ray.origin, sample.ray.direction});
             if constexpr ((kParts & kernel_part::glass) != 0) work_.stacks.medium(lane.top) = plan_.medium;
@@ -97,7 +100,7 @@ private:
                 lane.top = below;
                 continue;
             }
-            Vertex& v = work_.vertices.emplace_back();
+            Vertex& v = work_.vertices.add();
             v.s = surface_point(scene_, {branch.origin, branch.direction, kInfinity}, hit);
             v.wo = -branch.direction;
             v.material = &scene_.materials[v.s.material];
@@ -116,6 +119,7 @@ private:
     void add_light(std::uint32_t i, int wave) {
         const Light& light = plan_.lights[i];
         const bool at_light = work_.shadow_origins.at_light(i);
+        const bool plain = light.is_true_point() && light.falloff == Light::Falloff::none;
         RayBatch& rays = work_.shadow_rays;
         rays.clear(order_of_shadows(wave, at_light));
         for (std::uint32_t k = 0; k < work_.vertices.size(); ++k) {
@@ -126,7 +130,7 @@ private:
                 const Lane& lane = work_.lanes[v.lane];
                 if (light.has_area()) u = lane.sampler.square(hash(work_.stacks[lane.top].path, i));
             }
-            const LightSample l = sample_light(light, v.s.p, u);
+            const LightSample l = plain ? sample_plain_point(light, v.s.p) : sample_light(light, v.s.p, u);
             const glm::vec3 light_in = reflected_light(l, v.s, *v.material, v.wo, v.highlight);
             if (light_in == glm::vec3(0.0f)) continue;
             if (!plan_.shadows) {
@@ -165,7 +169,7 @@ private:
             else
                 work_.lanes[kept++] = lane;
         }
-        work_.lanes.erase(work_.lanes.begin() + static_cast<std::ptrdiff_t>(kept), work_.lanes.end());
+        work_.lanes.keep(kept);
     }
 
     const Scene& scene_;

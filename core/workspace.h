@@ -38,13 +38,32 @@ struct Vertex {
     std::uint32_t lane;
 };
 
+// Up to one item a lane; items keep their old contents until they are written.
+template <class T>
+class PerLane {
+public:
+    void clear() { size_ = 0; }
+    T& add() { return items_[size_++]; }
+    // Drops all but the first n.
+    void keep(std::size_t n) { size_ = n; }
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] bool empty() const { return size_ == 0; }
+    T& operator[](std::size_t i) { return items_[i]; }
+    T* begin() { return items_.data(); }
+    T* end() { return items_.data() + size_; }
+
+private:
+    std::array<T, kRayBatch> items_;
+    std::size_t size_ = 0;
+};
+
 struct Workspace {
     RayCounts counts;
     ShadowOrigins shadow_origins;
     std::uint64_t prepared_for = ~std::uint64_t{0};  // the generation whose lights they are of
     BranchStacks stacks;
-    std::vector<Lane> lanes;
-    std::vector<Vertex> vertices;
+    PerLane<Lane> lanes;
+    PerLane<Vertex> vertices;
     RayBatch rays, shadow_rays;
     HitBatch hits;
     OccludedBatch blocked;
