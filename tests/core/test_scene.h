@@ -7,7 +7,6 @@
 #include <cmath>
 #include <initializer_list>
 #include <memory>
-#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -140,6 +139,7 @@ public:
     void occluded(const RayBatch& batch, OccludedBatch& result) const noexcept { occluded_one_by_one(*this, batch, result); }
     [[nodiscard]] std::size_t memory_bytes() const { return inner_.memory_bytes(); }
 
+    void forget() { rays.clear(), shadow_rays.clear(); }
     mutable std::vector<Ray> rays, shadow_rays;
 
 private:
@@ -162,10 +162,8 @@ public:
         return radiance(Ray{origin, glm::vec3(glm::normalize(glm::dvec3(direction))), kInfinity}, index, x);
     }
     glm::dvec3 radiance(const Ray& ray, std::uint64_t index = 0, std::uint32_t x = 0) {
-        accelerator_.rays.clear();
-        accelerator_.shadow_rays.clear();
-        const Sampler sampler(settings_.sampler, x, 0, index, settings_.seed);
-        return glm::dvec3(trace(ray, sampler, std::make_integer_sequence<unsigned, kernel_part::count>()));
+        return glm::dvec3(trace({ray, {settings_.sampler, x, 0, index, settings_.seed}},
+                                std::make_integer_sequence<unsigned, kernel_part::count>()));
     }
     // Rays of the last call: the camera ray first, then in the order in which they were followed.
     [[nodiscard]] const std::vector<Ray>& rays() const { return accelerator_.rays; }
@@ -179,14 +177,13 @@ public:
 private:
     // Through the instance that the plan asks for, as the tile kernels do.
     template <unsigned... kParts>
-    glm::vec3 trace(const Ray& ray, const Sampler& sampler, std::integer_sequence<unsigned, kParts...>) {
+    glm::vec3 trace(const CameraSample& sample, std::integer_sequence<unsigned, kParts...>) {
         glm::vec3 light(0.0f);
         const auto run = [&](auto part) {
             Integrator<RecordingAccelerator, instance_parts(part)> integrator(*scene_, accelerator_, plan, work_);
             integrator.prepare();
-            accelerator_.shadow_rays.clear();
-            const CameraSample sample{ray, sampler};
-            EXPECT_TRUE(integrator.radiance(std::span(&sample, 1), std::span(&light, 1), [] { return false; }));
+            accelerator_.forget();
+            EXPECT_TRUE(integrator.radiance({&sample, 1}, {&light, 1}, [] { return false; }));
         };
         ((plan.kernel == kParts ? run(std::integral_constant<unsigned, kParts>()) : void()), ...);
         return light;
