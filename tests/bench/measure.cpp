@@ -1,0 +1,176 @@
+#include "measure.h"
+
+#include <algorithm>
+#include <atomic>
+#include <barrier>
+#include <functional>
+#include <thread>
+
+#include <pthread.h>
+#include <sched.h>
+#include <time.h>
+
+#include "embree_scene.h"
+
+namespace glint::bench {
+namespace {
+
+constexpr std::size_t kBlocksAtOnce = 16;  // 4096 rays: what a thread takes at a time
+
+double read_clock(clockid_t id) {
+    timespec t{};
+    clock_gettime(id, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// Thread i of several stays on the i-th processor that the process may use, so that none waits for another's.
+void pin_this_thread(int i) {
+    cpu_set_t allowed;
+    if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0) return;
+    int wanted = i % CPU_COUNT(&allowed);
+    for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+        if (!CPU_ISSET(cpu, &allowed) || wanted-- != 0) continue;
+        cpu_set_t one;
+        CPU_ZERO(&one);
+        CPU_SET(cpu, &one);
+        pthread_setaffinity_np(pthread_self(), sizeof(one), &one);
+        return;
+    }
+}
+
+struct Span {
+    double start = 0.0, end = 0.0, cpu = 0.0;
+};
+
+void work(const Competitor& competitor, const RaySet& set, std::vector<Block>& blocks, std::atomic<std::size_t>& next,
+          Span& span) {
+    const double cpu = read_clock(CLOCK_THREAD_CPUTIME_ID);
+    span.start = read_clock(CLOCK_MONOTONIC);
+    competitor.begin_thread();
+    for (;;) {
+        const std::size_t first = next.fetch_add(kBlocksAtOnce);
+        if (first >= blocks.size()) break;
+        const std::span some = std::span(blocks).subspan(first, std::min(kBlocksAtOnce, blocks.size() - first));
+        if (set.any) {
+            competitor.occluded(set.order, some);
+        } else {
+            competitor.closest(set.order, some);
+        }
+    }
+    competitor.end_thread();
+    span.end = read_clock(CLOCK_MONOTONIC);
+    span.cpu = read_clock(CLOCK_THREAD_CPUTIME_ID) - cpu;
+}
+
+double seconds_of_one_pass(const Competitor& competitor, const RaySet& set, std::vector<Block>& blocks, int threads,
+                           Clock clock) {
+    std::atomic<std::size_t> next{0};
+    std::vector<Span> spans(static_cast<std::size_t>(threads));
+    if (threads == 1) {
+        work(competitor, set, blocks, next, spans[0]);
+    } else {
+        std::barrier start(threads);
+        std::vector<std::jthread> workers;
+        for (int i = 0; i < threads; ++i) {
+            workers.emplace_back([&, i] {
+                pin_this_thread(i);
+                start.arrive_and_wait();
+                work(competitor, set, blocks, next, spans[static_cast<std::size_t>(i)]);
+            });
+        }
+    }
+    double start = spans[0].start, end = 0.0, cpu = 0.0;
+    for (const Span& s : spans) {
+        start = std::min(start, s.start);
+        end = std::max(end, s.end);
+        cpu += s.cpu;
+    }
+    return clock == Clock::wall ? end - start : cpu / threads;
+}
+
+double seconds_of(const std::function<void()>& f) {
+    const double start = read_clock(CLOCK_MONOTONIC);
+    f();
+    return read_clock(CLOCK_MONOTONIC) - start;
+}
+
+struct Builder {
+    Build result;
+    std::function<std::size_t(double&)> run;  // adds the seconds, returns the bytes
+};
+
+template <class A>
+Builder glint_builder(std::string name, const std::shared_ptr<const Geometry>& geometry) {
+    return {{std::move(name), 1, {}, 0}, [geometry](double& seconds) {
+                std::size_t bytes = 0;
+                seconds = seconds_of([&] { bytes = A(geometry).memory_bytes(); });
+                return bytes;
+            }};
+}
+
+Builder embree_builder(std::string name, const std::shared_ptr<const EmbreeInput>& input, const EmbreeBuild& build) {
+    return {{std::move(name), build.threads, {}, 0}, [input, build](double& seconds) {
+                const EmbreeScene scene(input, build);
+                seconds = scene.build_seconds();
+                return scene.memory_bytes();
+            }};
+}
+
+}  // namespace
+
+Spread spread(std::vector<double> values) {
+    if (values.empty()) return {};
+    std::sort(values.begin(), values.end());
+    const auto at = [&](double part) {
+        const double position = part * static_cast<double>(values.size() - 1);
+        const auto below = static_cast<std::size_t>(position);
+        const std::size_t above = std::min(below + 1, values.size() - 1);
+        return values[below] + (position - static_cast<double>(below)) * (values[above] - values[below]);
+    };
+    return {at(0.5), at(0.25), at(0.75)};
+}
+
+Spread ratio(const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> quotients;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) quotients.push_back(a[i] / b[i]);
+    return spread(std::move(quotients));
+}
+
+std::vector<Rates> race(const Competitors& competitors, const RaySet& set, int threads, int rounds, Clock clock) {
+    Answers answers(set.rays.size());
+    std::vector<Block> blocks = make_blocks(set, answers, 0, answers.hits.size());
+    std::vector<Rates> rates;
+    for (const auto& c : competitors) rates.push_back({c.get(), {}});
+    for (int round = 0; round < rounds; ++round) {
+        for (std::size_t k = 0; k < rates.size(); ++k) {
+            Rates& r = rates[(k + static_cast<std::size_t>(round) * 3) % rates.size()];
+            const double seconds = seconds_of_one_pass(*r.competitor, set, blocks, threads, clock);
+            r.mrays.push_back(1e-6 * static_cast<double>(set.rays.size()) / seconds);
+        }
+    }
+    return rates;
+}
+
+std::vector<Build> race_builds(const std::shared_ptr<const Geometry>& geometry, bool with_grid, int rounds) {
+    const auto input = std::make_shared<const EmbreeInput>(*geometry);
+    std::vector<Builder> builders;
+    builders.push_back(glint_builder<Bvh>("glint bvh", geometry));
+    if (with_grid) builders.push_back(glint_builder<UniformGrid>("glint grid", geometry));
+    for (int threads : {1, 2}) {
+        builders.push_back(embree_builder("embree low", input, {RTC_BUILD_QUALITY_LOW, false, false, threads}));
+        builders.push_back(embree_builder("embree medium", input, {RTC_BUILD_QUALITY_MEDIUM, false, false, threads}));
+        builders.push_back(embree_builder("embree high", input, {RTC_BUILD_QUALITY_HIGH, false, false, threads}));
+    }
+    for (int round = 0; round < rounds; ++round) {
+        for (Builder& builder : builders) {
+            double seconds = 0.0;
+            builder.result.bytes = builder.run(seconds);
+            builder.result.seconds.push_back(seconds);
+        }
+    }
+    std::vector<Build> builds;
+    for (Builder& builder : builders) builds.push_back(std::move(builder.result));
+    return builds;
+}
+
+}  // namespace glint::bench
