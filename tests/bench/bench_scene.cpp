@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kMeshDiagonal = 100.0;
 constexpr float kFramingMargin = 1.02f;
+constexpr float kFarthestLight = 10.0f;  // diagonals
 
 // Two triangles a side, corners shared.
 void add_box(const Box& box, Geometry& geometry) {
@@ -73,14 +74,21 @@ CameraPose tight_pose(const Geometry& geometry) {
     return pose;
 }
 
-// Where the scene's first point light stands, if it has one, else above the camera's left shoulder.
+// Where the scene's first point light stands, if it has one, else above the camera's left shoulder. A light beyond ten
+// diagonals is brought there: its rays are as good as parallel, and a grid's way with rays from far away (brute force)
+// would take hours.
 glm::vec3 light_position(const Scene& scene, const Aabb& bounds, bool use_scene) {
+    const float diagonal = glm::length(bounds.size());
+    glm::vec3 offset = diagonal * glm::vec3(-0.6f, 1.5f, 0.9f);
     if (use_scene) {
         for (const Light& light : scene.lights) {
-            if (light.shape == Light::Shape::point) return light.position;
+            if (light.shape != Light::Shape::point) continue;
+            offset = light.position - bounds.center();
+            break;
         }
     }
-    return bounds.center() + glm::length(bounds.size()) * glm::vec3(-0.6f, 1.5f, 0.9f);
+    const float farthest = kFarthestLight * diagonal, distance = glm::length(offset);
+    return bounds.center() + (distance > farthest ? farthest / distance : 1.0f) * offset;
 }
 
 std::shared_ptr<const Scene> load(const SceneSource& source, const std::string& shared_folder) {

@@ -55,9 +55,7 @@ SceneResult measure(const BenchScene& scene, const Arguments& arguments) {
 
     const auto bvh = std::make_shared<const Bvh>(scene.geometry);
     const auto grid = arguments.no_grid ? nullptr : std::make_shared<const UniformGrid>(scene.geometry);
-    // Kept until the program ends: the results name their competitors.
-    static std::vector<Competitors> all;
-    Competitors& competitors = all.emplace_back(embree_competitors(*scene.geometry));
+    Competitors competitors = embree_competitors(*scene.geometry);
     for (auto& c : glint_competitors(bvh, grid)) competitors.push_back(std::move(c));
     const BruteForce brute_force(scene.geometry);
     for (const RaySet& set : make_ray_sets(scene, *bvh, arguments.thin)) {

@@ -140,12 +140,12 @@ std::vector<Rates> race(const Competitors& competitors, const RaySet& set, int t
     Answers answers(set.rays.size());
     std::vector<Block> blocks = make_blocks(set, answers, 0, answers.hits.size());
     std::vector<Rates> rates;
-    for (const auto& c : competitors) rates.push_back({c.get(), {}});
+    for (const auto& c : competitors) rates.push_back({c->name(), c->role(), {}});
     for (int round = 0; round < rounds; ++round) {
         for (std::size_t k = 0; k < rates.size(); ++k) {
-            Rates& r = rates[(k + static_cast<std::size_t>(round) * 3) % rates.size()];
-            const double seconds = seconds_of_one_pass(*r.competitor, set, blocks, threads, clock);
-            r.mrays.push_back(1e-6 * static_cast<double>(set.rays.size()) / seconds);
+            const std::size_t c = (k + static_cast<std::size_t>(round) * 3) % rates.size();
+            const double seconds = seconds_of_one_pass(*competitors[c], set, blocks, threads, clock);
+            rates[c].mrays.push_back(1e-6 * static_cast<double>(set.rays.size()) / seconds);
         }
     }
     return rates;

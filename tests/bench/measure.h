@@ -21,7 +21,8 @@ struct Spread {
 [[nodiscard]] Spread ratio(const std::vector<double>& a, const std::vector<double>& b);
 
 struct Rates {
-    const Competitor* competitor = nullptr;
+    std::string name;  // of the competitor, which the rates outlive
+    Competitor::Role role;
     std::vector<double> mrays;  // per second, by round
 };
 // The order rotates from round to round, so that nobody always follows the same neighbour.

@@ -27,8 +27,8 @@ struct Visible {
     std::uint32_t id;  // of pixel and sample, for random numbers
 };
 
-// Which of the picture's tiles count; the diagonal shift keeps whole columns from being left out.
-bool tile_counts(int tx, int ty, int thin) { return (tx + ty * 3 + ty / 4) % thin == 0; }
+// Of each `thin` tiles in a row one counts, at random, so that no pattern of the scene is favoured.
+bool tile_counts(std::uint32_t tile, std::uint32_t thin) { return tile % thin == hash(tile / thin) % thin; }
 
 // Morton order inside a tile: 16 neighbours are 4x4 pixels, 64 are 8x8.
 glm::ivec2 morton(unsigned i) {
@@ -68,7 +68,7 @@ CameraRays camera_rays(const BenchScene& scene, const Picture& picture) {
     const int tiles = picture.size / kTile;
     for (int ty = 0; ty < tiles; ++ty) {
         for (int tx = 0; tx < tiles; ++tx) {
-            if (!tile_counts(tx, ty, picture.thin)) continue;
+            if (!tile_counts(static_cast<std::uint32_t>(ty * tiles + tx), static_cast<std::uint32_t>(picture.thin))) continue;
             for (unsigned i = 0; i < kTile * kTile; ++i) {
                 for (int s = 0; s < picture.samples; ++s) {
                     add(glm::ivec2(tx, ty) * kTile + morton(i), static_cast<std::uint32_t>(s));

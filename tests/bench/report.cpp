@@ -13,7 +13,7 @@ using nlohmann::json;
 std::string with_spread(const Spread& s) { return fmt::format("{:.2f} [{:.2f}–{:.2f}]", s.median, s.low, s.high); }
 
 const Rates* of_role(const std::vector<Rates>& rates, Role role) {
-    const auto found = std::find_if(rates.begin(), rates.end(), [&](const Rates& r) { return r.competitor->role() == role; });
+    const auto found = std::find_if(rates.begin(), rates.end(), [&](const Rates& r) { return r.role == role; });
     return found == rates.end() ? nullptr : &*found;
 }
 
@@ -21,7 +21,7 @@ const Rates* of_role(const std::vector<Rates>& rates, Role role) {
 const Rates* best_wide(const std::vector<Rates>& rates) {
     const Rates* best = nullptr;
     for (const Rates& r : rates) {
-        if (r.competitor->role() != Role::embree_wide) continue;
+        if (r.role != Role::embree_wide) continue;
         if (best == nullptr || spread(r.mrays).median > spread(best->mrays).median) best = &r;
     }
     return best;
@@ -51,7 +51,7 @@ std::string rate_table(const SceneResult& result, std::size_t t) {
     std::string text = head + "\n" + rule + "\n";
     const std::size_t competitors = result.sets.front().by_threads[t].size();
     for (std::size_t c = 0; c < competitors; ++c) {
-        text += fmt::format("| {} |", result.sets.front().by_threads[t][c].competitor->name());
+        text += fmt::format("| {} |", result.sets.front().by_threads[t][c].name);
         for (const SetResult& set : result.sets) text += fmt::format(" {:.2f} |", spread(set.by_threads[t][c].mrays).median);
         text += "\n";
     }
@@ -68,9 +68,9 @@ std::string ratio_table(const SceneResult& result, std::size_t t) {
         const std::vector<Rates>& rates = set.by_threads[t];
         const Rates *single = of_role(rates, Role::embree_single), *wide = best_wide(rates);
         const Rates *one = of_role(rates, Role::bvh_single), *batch = of_role(rates, Role::bvh_batch);
-        text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", set.check.set, ratio_cell(one, single),
-                            ratio_cell(batch, single), ratio_cell(batch, wide), wide ? wide->competitor->name() : "–",
-                            ratio_cell(of_role(rates, Role::grid), single));
+        text +=
+            fmt::format("| {} | {} | {} | {} | {} | {} |\n", set.check.set, ratio_cell(one, single), ratio_cell(batch, single),
+                        ratio_cell(batch, wide), wide ? wide->name : "–", ratio_cell(of_role(rates, Role::grid), single));
     }
     return text;
 }
@@ -103,7 +103,7 @@ json check_json(const Check& c) {
 std::string to_markdown(const SceneResult& result) {
     std::string text = fmt::format("### {}: {} triangles, {} spheres\n\n", result.name, result.triangles, result.spheres);
     if (result.left_out > 0) text += fmt::format("{} cones and planes of the scene left out.\n\n", result.left_out);
-    text += build_table(result) + "\n";
+    if (!result.builds.empty()) text += build_table(result) + "\n";
     for (std::size_t t = 0; t < result.threads.size(); ++t) text += rate_table(result, t) + "\n" + ratio_table(result, t) + "\n";
     return text + check_table(result) + fmt::format("\nPeak memory of the process so far: {} MiB.\n\n", result.peak_kib / 1024);
 }
@@ -122,7 +122,7 @@ nlohmann::json to_json(const SceneResult& result) {
         if (set.cost) entry["per_ray"] = {{"nodes", set.cost->nodes}, {"primitives", set.cost->primitives}};
         for (std::size_t t = 0; t < result.threads.size(); ++t) {
             json rates;
-            for (const Rates& r : set.by_threads[t]) rates[r.competitor->name()] = r.mrays;
+            for (const Rates& r : set.by_threads[t]) rates[r.name] = r.mrays;
             entry["runs"].push_back({{"threads", result.threads[t]}, {"mrays_per_second", std::move(rates)}});
         }
         out["sets"].push_back(std::move(entry));
