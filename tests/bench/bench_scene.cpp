@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include "core/scene_io.h"
-#include "stand_in_knot.h"
 
 namespace glint::bench {
 namespace {
@@ -27,6 +26,17 @@ void add_box(const Box& box, Geometry& geometry) {
         geometry.triangles.push_back({first + s[0], first + s[1], first + s[2]});
         geometry.triangles.push_back({first + s[0], first + s[2], first + s[3]});
     }
+}
+
+// A mesh comes on a stage of its own, a floor of another material; what is measured is the mesh.
+Geometry first_material_only(const Scene& scene) {
+    const auto& materials = scene.material_of[static_cast<std::size_t>(PrimitiveKind::triangle)];
+    Geometry geometry;
+    geometry.vertices = scene.geometry->vertices;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        if (materials[i] == materials.front()) geometry.triangles.push_back(scene.geometry->triangles[i]);
+    }
+    return geometry;
 }
 
 Geometry triangles_and_spheres(const Geometry& from) {
@@ -68,7 +78,9 @@ CameraPose tight_pose(const Geometry& geometry) {
         const float sideways = std::max(std::abs(glm::dot(p, right)), std::abs(glm::dot(p, up))) + radius;
         slope = std::max(slope, sideways / glm::dot(p, forward));
     };
-    for (const glm::vec3& v : geometry.vertices) see(v, 0.0f);
+    for (const auto& t : geometry.triangles) {
+        for (const std::uint32_t i : t) see(geometry.vertices[i], 0.0f);
+    }
     for (const Sphere& s : geometry.spheres) see(s.center, s.radius);
     pose.view_angle = glm::degrees(2.0f * std::atan(slope * kFramingMargin));
     return pose;
@@ -94,14 +106,7 @@ glm::vec3 light_position(const Scene& scene, const Aabb& bounds, bool use_scene)
 std::shared_ptr<const Scene> load(const SceneSource& source, const std::string& shared_folder) {
     LoadOptions options;
     options.load_environment = false;
-    if (source.source.starts_with("builtin:")) {
-        try {
-            return load_scene(std::string(source.source), options);
-        } catch (const SceneError&) {
-            if (!source.source.starts_with(kKnotPrefix)) throw;
-            return stand_in_knot(std::stoul(std::string(source.source.substr(kKnotPrefix.size()))));
-        }
-    }
+    if (source.source.starts_with("builtin:")) return load_scene(std::string(source.source), options);
     const std::filesystem::path path = std::filesystem::path(shared_folder) / "scenes" / source.source;
     if (!std::filesystem::exists(path)) throw SceneError(fmt::format("{}: not there", path.string()));
     return load_scene(path.string(), options);
@@ -131,7 +136,7 @@ const std::vector<SceneSource>& scene_sources() {
 std::optional<BenchScene> load_bench_scene(const SceneSource& source, const std::string& shared_folder) {
     try {
         const std::shared_ptr<const Scene> loaded = load(source, shared_folder);
-        Geometry geometry = triangles_and_spheres(*loaded->geometry);
+        Geometry geometry = source.mesh ? first_material_only(*loaded) : triangles_and_spheres(*loaded->geometry);
         BenchScene scene;
         scene.name = source.name;
         scene.left_out = loaded->geometry->cones.size() + loaded->geometry->planes.size();

@@ -99,11 +99,32 @@ struct Builder {
     std::function<std::size_t(double&)> run;  // adds the seconds, returns the bytes
 };
 
-template <class A>
-Builder glint_builder(std::string name, const std::shared_ptr<const Geometry>& geometry) {
-    return {{std::move(name), 1, {}, 0}, [geometry](double& seconds) {
+// Threads made for each call, as cheap as a caller without a pool can be.
+ParallelFor parallel_for_of(int threads) {
+    if (threads == 1) return serial_for;
+    return [threads](std::size_t count, const std::function<void(std::size_t)>& task) {
+        std::atomic<std::size_t> next{0};
+        const auto take = [&] {
+            for (std::size_t i = next++; i < count; i = next++) task(i);
+        };
+        std::vector<std::jthread> helpers;
+        for (int i = 1; i < threads; ++i) helpers.emplace_back(take);
+        take();
+    };
+}
+
+Builder bvh_builder(const std::shared_ptr<const Geometry>& geometry, int threads) {
+    return {{"glint bvh", threads, {}, 0}, [geometry, threads](double& seconds) {
                 std::size_t bytes = 0;
-                seconds = seconds_of([&] { bytes = A(geometry).memory_bytes(); });
+                seconds = seconds_of([&] { bytes = Bvh(geometry, parallel_for_of(threads)).memory_bytes(); });
+                return bytes;
+            }};
+}
+
+Builder grid_builder(const std::shared_ptr<const Geometry>& geometry) {
+    return {{"glint grid", 1, {}, 0}, [geometry](double& seconds) {
+                std::size_t bytes = 0;
+                seconds = seconds_of([&] { bytes = UniformGrid(geometry).memory_bytes(); });
                 return bytes;
             }};
 }
@@ -154,8 +175,8 @@ std::vector<Rates> race(const Competitors& competitors, const RaySet& set, int t
 std::vector<Build> race_builds(const std::shared_ptr<const Geometry>& geometry, bool with_grid, int rounds) {
     const auto input = std::make_shared<const EmbreeInput>(*geometry);
     std::vector<Builder> builders;
-    builders.push_back(glint_builder<Bvh>("glint bvh", geometry));
-    if (with_grid) builders.push_back(glint_builder<UniformGrid>("glint grid", geometry));
+    for (int threads : {1, 2}) builders.push_back(bvh_builder(geometry, threads));
+    if (with_grid) builders.push_back(grid_builder(geometry));
     for (int threads : {1, 2}) {
         builders.push_back(embree_builder("embree low", input, {RTC_BUILD_QUALITY_LOW, false, false, threads}));
         builders.push_back(embree_builder("embree medium", input, {RTC_BUILD_QUALITY_MEDIUM, false, false, threads}));

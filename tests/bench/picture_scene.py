@@ -71,6 +71,14 @@ def matte(color):
 
 def on_a_floor(scene):
     """The mesh scaled to a diagonal of 100 on a large matte floor under one light; no mirrors, no highlights."""
+    # Meshes come on a stage of another material, which goes.
+    kept = [t for t, material in scene.each_triangle() if material == scene.triangle_material[0]]
+    scene.triangles = [i for t in kept for i in t]
+    scene.triangle_material = [0] * len(kept)
+    used = sorted(set(scene.triangles))
+    number = {i: k for k, i in enumerate(used)}
+    scene.vertices = [x for i in used for x in scene.vertex(i)]
+    scene.triangles = [number[i] for i in scene.triangles]
     axes = [scene.vertices[k::3] for k in range(3)]
     lo, hi = [min(a) for a in axes], [max(a) for a in axes]
     middle, size = scale(add(lo, hi), 0.5), 100.0 / length(subtract(hi, lo))
@@ -81,7 +89,7 @@ def on_a_floor(scene):
         scene.vertices += [x, floor, z]
     scene.triangles += [first, first + 2, first + 1, first + 1, first + 2, first + 3]
     scene.materials = [matte([0.7, 0.6, 0.5]), matte([0.5, 0.5, 0.5])]
-    scene.triangle_material = [0] * len(scene.triangle_material) + [1, 1]
+    scene.triangle_material = [0] * len(kept) + [1, 1]
     scene.lights = [[-60.0, 150.0, 90.0]]
     scene.background = [0.0, 0.0, 0.0]  # glTF knows none
     eye = scale(unit([0.35, 0.3, 1.0]), 200.0)

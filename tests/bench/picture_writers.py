@@ -69,7 +69,8 @@ def write_tachyon(scene, path, depth):
         # Zoom 1 is a window one unit high at distance one.
         out.write("Begin_Scene\nResolution 512 512\nCamera\n"
                   f"  Zoom {0.5 / scene.slope:.7g}\n  Aspectratio 1.0\n  Antialiasing 0\n  Raydepth {depth}\n"
-                  f"  Center {mirrored(scene.eye)}\n  Viewdir {mirrored(scene.forward)}\n  Updir {mirrored(scene.up)}\nEnd_Camera\n")
+                  f"  Center {mirrored(scene.eye)}\n  Viewdir {mirrored(scene.forward)}\n"
+                  f"  Updir {mirrored(scene.up)}\nEnd_Camera\n")
         out.write(f"Background {spaced(scene.background)}\n")
         for light in scene.lights:
             out.write(f"Light Center {mirrored(light)} Rad 0.001 Color 1 1 1\n")

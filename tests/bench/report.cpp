@@ -78,10 +78,11 @@ std::string ratio_table(const SceneResult& result, std::size_t t) {
 std::string check_table(const SceneResult& result) {
     std::string text =
         "| checks | rays | hits | glint's paths differ | brute force differs | Embree robust: other verdict, other hit |"
-        " nodes, primitives a ray |\n| --- | --- | --- | --- | --- | --- | --- |\n";
+        " nodes, leaves, primitives a ray |\n| --- | --- | --- | --- | --- | --- | --- |\n";
     for (const SetResult& set : result.sets) {
         const Check& c = set.check;
-        const std::string cost = set.cost ? fmt::format("{:.1f}, {:.1f}", set.cost->nodes, set.cost->primitives) : "–";
+        const std::string cost =
+            set.cost ? fmt::format("{:.1f}, {:.1f}, {:.1f}", set.cost->nodes, set.cost->leaves, set.cost->primitives) : "–";
         text += fmt::format("| {} | {} | {} | {} | {} of {} | {}, {} | {} |\n", c.set, c.rays, c.hits, c.paths_differ,
                             c.brute_force_differs, c.sampled, c.peer_hit_or_miss, c.peer_distance, cost);
     }
@@ -119,7 +120,8 @@ nlohmann::json to_json(const SceneResult& result) {
     }
     for (const SetResult& set : result.sets) {
         json entry{{"set", set.check.set}, {"check", check_json(set.check)}};
-        if (set.cost) entry["per_ray"] = {{"nodes", set.cost->nodes}, {"primitives", set.cost->primitives}};
+        if (set.cost)
+            entry["per_ray"] = {{"nodes", set.cost->nodes}, {"leaves", set.cost->leaves}, {"primitives", set.cost->primitives}};
         for (std::size_t t = 0; t < result.threads.size(); ++t) {
             json rates;
             for (const Rates& r : set.by_threads[t]) rates[r.name] = r.mrays;
