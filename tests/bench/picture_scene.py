@@ -36,7 +36,6 @@ class Scene:
 
     def __init__(self, dump, name):
         self.name = name
-        self.direct_light_only = False
         self.vertices, self.triangles = dump["vertices"], dump["triangles"]
         self.spheres, self.materials = dump["spheres"], dump["materials"]
         self.triangle_material, self.sphere_material = dump["triangle_material"], dump["sphere_material"]
@@ -94,5 +93,4 @@ def on_a_floor(scene):
     scene.background = [0.0, 0.0, 0.0]  # glTF knows none
     eye = scale(unit([0.35, 0.3, 1.0]), 200.0)
     scene.look({"eye": eye, "target": [0.0, 0.0, 0.0], "up": [0.0, 1.0, 0.0], "angle": 28.0})
-    scene.direct_light_only = True
     return scene
