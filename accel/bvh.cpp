@@ -1,5 +1,6 @@
 #include "accel/bvh.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace glint {
@@ -27,6 +28,7 @@ BvhView BvhTree::view(const Geometry& geometry) const {
         view.hi[i] = bounds.hi[i];
     }
     view.magnitude = bounds.magnitude();
+    view.leaf_extent = leaf_extent;
     return view;
 }
 
@@ -51,11 +53,13 @@ bool Bvh::occluded(const Ray& ray) const noexcept {
 }
 
 void Bvh::closest_hits(const RayBatch& rays, HitBatch& hits) const noexcept {
-    for (int i = 0; i < rays.count; ++i) {
-        Hit best;
-        best.t = rays.t_max[i];
-        if (has_planes_) best = begin_query(PreparedRay(rays[i], view_.magnitude), *geometry_);
-        hits.set(i, best);
+    if (has_planes_) {
+        for (int i = 0; i < rays.count; ++i) hits.set(i, begin_query(PreparedRay(rays[i], view_.magnitude), *geometry_));
+    } else {
+        std::copy_n(rays.t_max, rays.count, hits.t);
+        std::fill_n(hits.u, rays.count, 0.0f);
+        std::fill_n(hits.v, rays.count, 0.0f);
+        std::fill_n(hits.primitive, rays.count, kNoPrimitive);
     }
     if (view_.units != nullptr) kernels_->closest_batch(view_, rays, hits);
 }

@@ -26,6 +26,7 @@ struct BvhTree {
     Units units;  // empty for an empty scene
     Aabb bounds;
     int depth = 0;  // levels of nodes
+    float leaf_extent = 0.0f;  // see BvhView
     std::size_t nodes = 0, leaves = 0;
 
     [[nodiscard]] BvhView view(const Geometry& geometry) const;

@@ -51,6 +51,7 @@ private:
         Units units;
         std::size_t nodes = 0, leaves = 0;
         int depth = 0;
+        double leaf_area = 0.0, leaf_area_times_extent = 0.0;
     };
     struct Task {
         Candidate candidate;
@@ -170,6 +171,11 @@ private:
 
     BvhRef append_leaf(Part& part, const BuildRange& range) {
         ++part.leaves;
+        alignas(16) float side[4];
+        _mm_store_ps(side, _mm_sub_ps(range.bounds.hi, range.bounds.lo));
+        const double area = static_cast<double>(range.bounds.half_area());
+        part.leaf_area += area;
+        part.leaf_area_times_extent += area * static_cast<double>(std::max(side[0], std::max(side[1], side[2])));
         Ids ids;
         for (std::size_t i = 0; i < kBvhWidth; ++i) ids[i] = refs_[range.first + std::min<std::size_t>(i, range.count - 1)].id;
         // Ascending ids make equal trees equal in memory, whatever order the threads left.
@@ -234,10 +240,13 @@ private:
         });
         tree.nodes = top.nodes, tree.leaves = top.leaves, tree.depth = top.depth;
         for (const Part& part : parts_) {
+            top.leaf_area += part.leaf_area;
+            top.leaf_area_times_extent += part.leaf_area_times_extent;
             tree.nodes += part.nodes;
             tree.leaves += part.leaves;
             tree.depth = std::max(tree.depth, part.depth);
         }
+        if (top.leaf_area > 0.0) tree.leaf_extent = static_cast<float>(top.leaf_area_times_extent / top.leaf_area);
         return tree;
     }
     static void move_references(Units& units, std::size_t node, BvhRef by) {

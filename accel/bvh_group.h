@@ -14,9 +14,16 @@ constexpr int kGroup = 16;
 struct SpanPlane {
     float slope, offset;
 };
+// Least and largest position of the rays along x or y at the two depths.
+struct Extent {
+    float lo_a, hi_a, lo_b, hi_b;
+};
 struct Span {
     int kx, ky, kz;
-    bool forward;  // whether the rays go up the axis
+    bool forward;       // whether the rays go up the axis
+    bool common;        // whether they start at one point
+    float za, zb;       // the two depths, as coordinates
+    Extent x, y;
     SpanPlane lo_x, hi_x, lo_y, hi_y;
     float z_start;  // depth (z, or -z where not forward) before which no ray starts
     float padding;
@@ -112,12 +119,12 @@ struct Group {
             found |= lanes;
             return;
         }
-        if (lanes == 0) return;
+        // Without a branch on whether there is any: it would be mispredicted too often.
         const auto mask = Float16::Mask::from_bits(lanes);
-        select(mask, at, Float16::load(t)).store(t);
-        select(mask, at_u, Float16::load(u)).store(u);
-        select(mask, at_v, Float16::load(v)).store(v);
-        store_ids(mask, primitive, id);
+        store_where(mask, at, t);
+        store_where(mask, at_u, u);
+        store_where(mask, at_v, v);
+        store_where(mask, primitive, id);
         found |= lanes;
     }
     // One primitive and one lane by the scalar code.
@@ -136,18 +143,22 @@ struct Group {
         if (any) active &= ~(1u << lane);
     }
 
-    template <bool any>
-    void meet(const TriangleBlock& b, int k, const Span& span, unsigned lanes) noexcept {
-        const auto corner = [&](int c, int axis) { return Float16::set(b.v[3 * c + axis][k]) - o[axis]; };
+    // `corners`: of a block, relative to the origin where `common`.
+    template <bool any, bool common>
+    void meet(const float (*corners)[kBvhWidth], PrimitiveId primitive, int k, const Span& span, unsigned lanes) noexcept {
+        const auto corner = [&](int c, int axis) {
+            const Float16 x = Float16::set(corners[3 * c + axis][k]);
+            return common ? x : x - o[axis];
+        };
         Triangles<Float16> s;
         s.ax = corner(0, span.kx), s.ay = corner(0, span.ky), s.az = corner(0, span.kz);
         s.bx = corner(1, span.kx), s.by = corner(1, span.ky), s.bz = corner(1, span.kz);
         s.cx = corner(2, span.kx), s.cy = corner(2, span.ky), s.cz = corner(2, span.kz);
         s.shear(shear_x, shear_y);
         const TriangleLanes<Float16> r = meet_triangles(s, inverse_z);
-        take<any>(nearer(r.hit, r.t, lanes, b.id[k]), r.t, r.u, r.v, b.id[k]);
+        take<any>(nearer(r.hit, r.t, lanes, primitive), r.t, r.u, r.v, primitive);
         for (unsigned unsure = r.unsure.bits() & lanes; __builtin_expect(unsure != 0, !kFused); unsure &= unsure - 1) {
-            decide_alone<any>(__builtin_ctz(unsure), b.id[k]);
+            decide_alone<any>(__builtin_ctz(unsure), primitive);
         }
     }
 

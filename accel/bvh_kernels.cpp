@@ -1,8 +1,7 @@
 #include "accel/bvh_kernels.h"
 
 #include "accel/bvh_flight.h"
-#include "accel/bvh_packet.h"
-#include "accel/bvh_span.h"
+#include "accel/bvh_frustum.h"
 
 // Compiled once per instruction set (CMakeLists.txt says with which flags).
 namespace glint::GLINT_ISA {
@@ -82,29 +81,54 @@ void closest_of(const BvhView& bvh, const RayBatch& rays, int i, HitBatch& hits)
     hits.primitive[i] = best.primitive;
 }
 
+// The lanes' distances to beat and what is hit there, from the batch and back.
+void begin(const HitBatch& hits, int count, Group& g) noexcept {
+    g.active = (1u << count) - 1u;
+    g.found = 0;
+    const auto lanes = Float16::Mask::from_bits(g.active);
+    min(select(lanes, Float16::load(hits.t + g.first), Float16::set(hits.t[g.first])), Float16::set(kLargestT)).store(g.t);
+    copy_where(Float16::Mask::from_bits(0xffffu), hits.primitive + g.first, g.id);
+}
+void end(const Group& g, HitBatch& hits) noexcept {
+    const auto lanes = Float16::Mask::from_bits(g.found);
+    copy_where(lanes, g.t, hits.t + g.first);
+    copy_where(lanes, g.u, hits.u + g.first);
+    copy_where(lanes, g.v, hits.v + g.first);
+    copy_where(lanes, g.id, hits.primitive + g.first);
+}
+
+// Whether the span is narrow against the leaves.
+bool narrow_beside_leaves(const BvhView& bvh, const Span& s) noexcept {
+    const float x = (s.x.hi_a - s.x.lo_a) + (s.x.hi_b - s.x.lo_b), y = (s.y.hi_a - s.y.lo_a) + (s.y.hi_b - s.y.lo_b);
+    return 0.5f * (x < y ? y : x) <= kFrustumWidth * bvh.leaf_extent;
+}
+
 void closest_coherent(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) noexcept {
-    for (int first = 0; first < rays.count; first += kGroup) {
-        const int count = rays.count - first < kGroup ? rays.count - first : kGroup;
-        Group g;
-        Span span;
-        Float16 padding;
-        if (!gather(bvh, rays, first, count, g, span, padding)) {
-            for (int i = first; i < first + count; ++i) closest_of(bvh, rays, i, hits);
-            continue;
+    constexpr int kRays = kFrustumGroups * kGroup;
+    Group groups[kFrustumGroups];
+    Span spans[kFrustumGroups], all;
+    for (int first = 0; first < rays.count; first += kRays) {
+        bool gathered[kFrustumGroups] = {};
+        Float16 padding[kFrustumGroups];
+        bool together = rays.order == RayOrder::common_origin && rays.count - first >= kRays;
+        for (int i = 0; i < kFrustumGroups; ++i) {
+            const int at = first + i * kGroup, left = rays.count - at;
+            if (left <= 0) break;
+            gathered[i] = gather(bvh, rays, at, left < kGroup ? left : kGroup, groups[i], spans[i], padding[i]);
+            if (gathered[i]) begin(hits, left < kGroup ? left : kGroup, groups[i]);
+            together = together && gathered[i] && spans[i].common;
+            for (int axis = 0; axis < 3; ++axis) together = together && rays.origin[axis][at] == rays.origin[axis][first];
         }
-        g.active = (1u << count) - 1u;
-        for (int l = 0; l < kGroup; ++l) {
-            const int i = first + (l < count ? l : 0);
-            g.t[l] = hits.t[i] < kLargestT ? hits.t[i] : kLargestT;
-            g.id[l] = hits.primitive[i];
-        }
-        traverse_group<false>(bvh, g, span, GroupSlabs(g, padding), octant_of(rays, first));
-        for (unsigned m = g.found; m != 0; m &= m - 1) {
-            const int l = __builtin_ctz(m);
-            hits.t[first + l] = g.t[l];
-            hits.u[first + l] = g.u[l];
-            hits.v[first + l] = g.v[l];
-            hits.primitive[first + l] = g.id[l];
+        together = together && join(spans, kFrustumGroups, all) && narrow_beside_leaves(bvh, all);
+        if (together) traverse_frustum(bvh, groups, spans, all, octant_of(rays, first));
+        for (int i = 0; i < kFrustumGroups; ++i) {
+            const int at = first + i * kGroup;
+            if (!gathered[i]) {
+                for (int k = at; k < at + kGroup && k < rays.count; ++k) closest_of(bvh, rays, k, hits);
+                continue;
+            }
+            if (!together) traverse_group<false>(bvh, groups[i], spans[i], GroupSlabs(groups[i], padding[i]), octant_of(rays, at));
+            end(groups[i], hits);
         }
     }
 }

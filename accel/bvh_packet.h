@@ -4,6 +4,8 @@
 // for each ray.
 #pragma once
 
+#include <type_traits>
+
 #include "accel/bvh_group.h"
 #include "accel/bvh_single.h"
 
@@ -64,6 +66,35 @@ inline float end_of(const Group& g, const Span& span) noexcept {
     return reduce_max(depth) + span.padding + 0x1p-20f * std::fabs(reduce_max(depth));
 }
 
+// The corners of a leaf's triangles as seen from the common origin of a group.
+struct Corners {
+    alignas(32) float v[9][kBvhWidth];
+
+    Corners(const TriangleBlock& b, const Ray& ray) noexcept {
+        const float* o = &ray.origin.x;
+        for (int i = 0; i < 9; ++i) (Float8::load(b.v[i]) - Float8::set(o[i % 3])).store(v[i]);
+    }
+};
+
+// The lanes against triangles `m` of a block.
+template <bool any>
+inline void meet_triangles(const TriangleBlock& b, unsigned m, const Span& span, unsigned lanes, Group& g) noexcept {
+    const auto meet_all = [&](auto common, const float (*v)[kBvhWidth]) {
+        for (; m != 0; m &= m - 1) {
+            const int k = __builtin_ctz(m);
+            g.meet<any, decltype(common)::value>(v, b.id[k], k, span, any ? lanes & g.active : lanes);
+        }
+    };
+    m &= distinct(b.id);
+    if (m == 0) return;
+    if (span.common) {
+        const Corners corners(b, g.ray(0));
+        meet_all(std::true_type(), corners.v);
+    } else {
+        meet_all(std::false_type(), b.v);
+    }
+}
+
 // The lanes against the primitives of a leaf that the span leaves.
 template <bool any>
 inline void meet_leaf(BvhRef leaf, const BvhView& bvh, const Span& span, const SpanTest& test, Float8 z_end, unsigned lanes,
@@ -72,10 +103,7 @@ inline void meet_leaf(BvhRef leaf, const BvhView& bvh, const Span& span, const S
     switch (static_cast<PrimitiveKind>(leaf_kind(leaf))) {
         case PrimitiveKind::triangle: {
             const auto& b = bvh.at<TriangleBlock>(leaf);
-            for (unsigned m = test.triangles(b, z_end); m != 0 && alive() != 0; m &= m - 1) {
-                const int k = __builtin_ctz(m);
-                if (k == 0 || b.id[k] != b.id[k - 1]) g.meet<any>(b, k, span, alive());
-            }
+            meet_triangles<any>(b, test.triangles(b, z_end), span, lanes, g);
             return;
         }
         case PrimitiveKind::sphere: {
@@ -120,9 +148,10 @@ inline void traverse_group(const BvhView& bvh, Group& g, const Span& span, const
                 alignas(32) float depths[kBvhWidth];
                 depth.store(depths);
                 const Float16 limit = Float16::load(g.t);
-                for (int i = 0; i < kBvhWidth; ++i) {
-                    const unsigned k = node.order[i] >> shift & 7u;
-                    if ((mask >> k & 1u) == 0) continue;
+                alignas(32) std::uint32_t far_first[kBvhWidth];
+                const int count = sort_children(node, mask, shift, far_first);
+                for (int i = 0; i < count; ++i) {
+                    const std::uint32_t k = far_first[i];
                     const unsigned entering = slabs(node, static_cast<int>(k), limit) & lanes;
                     if (entering == 0) continue;
                     stack.ref[stack.top] = node.child[k];

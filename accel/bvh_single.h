@@ -64,6 +64,27 @@ inline BvhRef push_unsorted(TraversalStack& stack, const BvhNode& node, unsigned
     return first;
 }
 
+// Writes the children of `mask` far to near and returns how many there are.
+inline int sort_children(const BvhNode& node, unsigned mask, unsigned shift, std::uint32_t* far_first) noexcept {
+#if defined(__AVX512VL__)
+    const __m256i order = _mm256_and_si256(
+        _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(shift)),
+        _mm256_set1_epi32(7));
+    const __m256i bit = _mm256_sllv_epi32(_mm256_set1_epi32(1), order);
+    const __mmask8 present = _mm256_test_epi32_mask(bit, _mm256_set1_epi32(static_cast<int>(mask)));
+    _mm256_store_si256(reinterpret_cast<__m256i*>(far_first), _mm256_maskz_compress_epi32(present, order));
+    return __builtin_popcount(mask);
+#else
+    int count = 0;
+    for (int i = 0; i < kBvhWidth; ++i) {
+        const unsigned k = node.order[i] >> shift & 7u;
+        far_first[count & 7] = k;
+        count += static_cast<int>(mask >> k & 1u);
+    }
+    return count;
+#endif
+}
+
 // Improves `best`. With `any`, ends at the first hit. `visit(ref)` hears of every node and leaf.
 template <bool any, class Visit>
 inline void traverse(const BvhView& bvh, const Ray& ray, Hit& best, Visit visit) noexcept {

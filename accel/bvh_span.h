@@ -19,9 +19,8 @@ inline bool share_axis(const Group& g, int k, bool forward, Float16 largest_orig
     return (mine & sign & finite & sized & lt(zero, t_max)).bits() == 0xffffu;
 }
 
-// The planes through the lanes' extreme positions at two depths; between these no ray leaves them, because it runs straight.
-inline bool bound_by_planes(Float16 at_a, Float16 at_b, float za, float zb, float padding, SpanPlane& lo,
-                            SpanPlane& hi) noexcept {
+// The planes through the rays' extreme positions at two depths; between these no ray leaves them, because it runs straight.
+inline bool bound_by_planes(const Extent& e, float za, float zb, float padding, SpanPlane& lo, SpanPlane& hi) noexcept {
     const float size = std::fabs(za) < std::fabs(zb) ? std::fabs(zb) : std::fabs(za);
     const auto plane = [&](float a, float b, float side) {
         SpanPlane p;
@@ -29,16 +28,47 @@ inline bool bound_by_planes(Float16 at_a, Float16 at_b, float za, float zb, floa
         p.offset = (a - p.slope * za) + side * (padding + kPadding * std::fabs(p.slope) * size);
         return p;
     };
-    lo = plane(reduce_min(at_a), reduce_min(at_b), -1.0f);
-    hi = plane(reduce_max(at_a), reduce_max(at_b), 1.0f);
+    lo = plane(e.lo_a, e.lo_b, -1.0f);
+    hi = plane(e.hi_a, e.hi_b, 1.0f);
     return std::fabs(lo.offset) <= kLargestT && std::fabs(hi.offset) <= kLargestT;
+}
+
+inline bool bound_by_planes(Span& s) noexcept {
+    return bound_by_planes(s.x, s.za, s.zb, s.padding, s.lo_x, s.hi_x) && bound_by_planes(s.y, s.za, s.zb, s.padding, s.lo_y, s.hi_y);
+}
+
+// The span of all `count` groups together; false where they do not lie side by side or do not share axis and depths.
+inline bool join(const Span* parts, int count, Span& all) noexcept {
+    all = parts[0];
+    const auto width = [](const Extent& e) { return e.hi_b - e.lo_b; };
+    float sum_x = width(all.x), sum_y = width(all.y);
+    const auto grow = [](Extent& e, const Extent& by) {
+        e.lo_a = by.lo_a < e.lo_a ? by.lo_a : e.lo_a;
+        e.hi_a = by.hi_a > e.hi_a ? by.hi_a : e.hi_a;
+        e.lo_b = by.lo_b < e.lo_b ? by.lo_b : e.lo_b;
+        e.hi_b = by.hi_b > e.hi_b ? by.hi_b : e.hi_b;
+    };
+    for (int i = 1; i < count; ++i) {
+        const Span& p = parts[i];
+        if (p.kz != all.kz || p.forward != all.forward || p.za != all.za || p.zb != all.zb) return false;
+        grow(all.x, p.x);
+        grow(all.y, p.y);
+        sum_x += width(p.x);
+        sum_y += width(p.y);
+        all.z_start = p.z_start < all.z_start ? p.z_start : all.z_start;
+        all.padding = p.padding > all.padding ? p.padding : all.padding;
+    }
+    // Jittered samples leave gaps between pixels, hence the half.
+    return width(all.x) <= 1.5f * sum_x && width(all.y) <= 1.5f * sum_y && bound_by_planes(all);
 }
 
 // Rays first to first + count - 1 (1 to 16) with limits `t_max`; lanes beyond the count repeat the first.
 inline bool gather(const BvhView& bvh, const RayBatch& rays, int first, int count, Group& g, Span& span,
                    Float16& padding) noexcept {
     const auto lanes = Float16::Mask::from_bits((1u << count) - 1u);
-    const auto load = [&](const float* p) { return select(lanes, Float16::load(p + first), Float16::set(p[first])); };
+    const auto load = [&](const float* p) {
+        return count == kGroup ? Float16::load(p + first) : select(lanes, Float16::load(p + first), Float16::set(p[first]));
+    };
     for (int i = 0; i < 3; ++i) {
         g.o[i] = load(rays.origin[i]);
         g.d[i] = load(rays.direction[i]);
@@ -68,12 +98,18 @@ inline bool gather(const BvhView& bvh, const RayBatch& rays, int first, int coun
     const float scene_far = (forward ? bvh.hi[k] : -bvh.lo[k]) + span.padding;
     const float near = span.z_start < scene_near ? scene_near : span.z_start;
     if (!(near < scene_far)) return false;
-    const float za = span.depth(near), zb = span.depth(scene_far);
-    const auto along = [&](int axis, Float16 shear, float at) { return g.o[axis] + shear * (Float16::set(at) - g.o[k]); };
-    return bound_by_planes(along(span.kx, g.shear_x, za), along(span.kx, g.shear_x, zb), za, zb, span.padding, span.lo_x,
-                           span.hi_x) &&
-           bound_by_planes(along(span.ky, g.shear_y, za), along(span.ky, g.shear_y, zb), za, zb, span.padding, span.lo_y,
-                           span.hi_y);
+    span.za = span.depth(near);
+    span.zb = span.depth(scene_far);
+    span.common = true;
+    for (const Float16& o : g.o) span.common = span.common && reduce_min(o) == reduce_max(o);
+    const auto extent = [&](int axis, Float16 shear) {
+        const auto at = [&](float depth_z) { return g.o[axis] + shear * (Float16::set(depth_z) - g.o[k]); };
+        const Float16 a = at(span.za), b = at(span.zb);
+        return Extent{reduce_min(a), reduce_max(a), reduce_min(b), reduce_max(b)};
+    };
+    span.x = extent(span.kx, g.shear_x);
+    span.y = extent(span.ky, g.shear_y);
+    return bound_by_planes(span);
 }
 
 }  // namespace glint::GLINT_ISA

@@ -3,6 +3,8 @@
 // about it and may be wrong at the cost of speed alone.
 #pragma once
 
+#include <xmmintrin.h>
+
 #include <array>
 #include <cstdint>
 
@@ -36,6 +38,27 @@ struct alignas(64) RayBatch {
             direction[i][count] = ray.direction[i];
         }
         t_max[count++] = ray.t_max;
+    }
+    // The batch is n <= kRayBatch rays in a row: push() for all of them, four at a time.
+    void assign(const Ray* rays, int n) {
+        static_assert(sizeof(Ray) == 28, "two overlapping loads of four floats read a ray");
+        int i = 0;
+        for (; i + 4 <= n; i += 4) {
+            __m128 a[4], b[4];
+            for (int k = 0; k < 4; ++k) {
+                a[k] = _mm_loadu_ps(&rays[i + k].origin.x);
+                b[k] = _mm_loadu_ps(&rays[i + k].direction.x);
+            }
+            _MM_TRANSPOSE4_PS(a[0], a[1], a[2], a[3]);
+            _MM_TRANSPOSE4_PS(b[0], b[1], b[2], b[3]);
+            for (int k = 0; k < 3; ++k) {
+                _mm_store_ps(origin[k] + i, a[k]);
+                _mm_store_ps(direction[k] + i, b[k]);
+            }
+            _mm_store_ps(t_max + i, b[3]);
+        }
+        count = i;
+        for (; i < n; ++i) push(rays[i]);
     }
     [[nodiscard]] Ray operator[](int i) const {
         return {{origin[0][i], origin[1][i], origin[2][i]}, {direction[0][i], direction[1][i], direction[2][i]}, t_max[i]};

@@ -81,8 +81,13 @@ inline Float8 lower(Float16 a) { return {_mm512_castps512_ps256(a.v)}; }
 inline Float8 upper(Float16 a) { return {_mm512_extractf32x8_ps(a.v, 1)}; }
 inline Float16 join(Float8 a, Float8 b) { return {_mm512_insertf32x8(_mm512_castps256_ps512(a.v), b.v, 1)}; }
 inline BitMask<16> join(BitMask<8> a, BitMask<8> b) { return {a.m | b.m << 8}; }
-inline void store_ids(Float16::Mask m, std::uint32_t id, std::uint32_t* p) {
+inline void store_where(Float16::Mask m, Float16 a, float* p) { _mm512_mask_store_ps(p, static_cast<__mmask16>(m.m), a.v); }
+inline void store_where(Float16::Mask m, std::uint32_t id, std::uint32_t* p) {
     _mm512_mask_store_epi32(p, static_cast<__mmask16>(m.m), _mm512_set1_epi32(static_cast<int>(id)));
+}
+// Copies the lanes of m from one aligned array to another, whatever the 32 bits mean.
+inline void copy_where(Float16::Mask m, const void* from, void* to) {
+    _mm512_mask_store_epi32(to, static_cast<__mmask16>(m.m), _mm512_load_epi32(from));
 }
 
 #else
@@ -218,25 +223,47 @@ inline Float8 lower(Float16 a) { return a.lo; }
 inline Float8 upper(Float16 a) { return a.hi; }
 inline Float16 join(Float8 a, Float8 b) { return {a, b}; }
 inline Float16::Mask join(Float8::Mask a, Float8::Mask b) { return {a, b}; }
-inline void store_ids(Float16::Mask m, std::uint32_t id, std::uint32_t* p) {
+inline void store_where(Float16::Mask m, Float16 a, float* p) { select(m, a, Float16::load(p)).store(p); }
+inline void store_where(Float16::Mask m, std::uint32_t id, std::uint32_t* p) {
     for (unsigned bits = m.bits(); bits != 0; bits &= bits - 1) p[__builtin_ctz(bits)] = id;
+}
+// Copies the lanes of m from one aligned array to another, whatever the 32 bits mean: loads and blends do not touch them.
+inline void copy_where(Float16::Mask m, const void* from, void* to) {
+    store_where(m, Float16::load(static_cast<const float*>(from)), static_cast<float*>(to));
 }
 
 #endif
 
+// Bits of the ids that differ from the one before; the first always does. p[-1] must be readable.
+inline unsigned distinct(const std::uint32_t* p) {
+#if defined(__AVX2__)
+    const __m256i same = _mm256_cmpeq_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(p)),
+                                            _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p - 1)));
+    return (~static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(same))) & 0xffu) | 1u;
+#else
+    unsigned bits = 1;
+    for (int i = 1; i < 8; ++i) bits |= (p[i] != p[i - 1] ? 1u : 0u) << i;
+    return bits;
+#endif
+}
+inline __m128 quarter(Float8 a, bool high) {
+#if defined(__AVX2__)
+    return high ? _mm256_extractf128_ps(a.v, 1) : _mm256_castps256_ps128(a.v);
+#else
+    return high ? a.hi.v : a.lo.v;
+#endif
+}
 inline float reduce_min(Float16 a) {
-    alignas(32) float x[8];
-    min(lower(a), upper(a)).store(x);
-    float least = x[0];
-    for (int i = 1; i < 8; ++i) least = x[i] < least ? x[i] : least;
-    return least;
+    const Float8 b = min(lower(a), upper(a));
+    __m128 c = _mm_min_ps(quarter(b, false), quarter(b, true));
+    c = _mm_min_ps(c, _mm_movehl_ps(c, c));
+    return _mm_cvtss_f32(_mm_min_ss(c, _mm_shuffle_ps(c, c, 1)));
 }
 inline float reduce_max(Float16 a) {
-    alignas(32) float x[8];
-    max(lower(a), upper(a)).store(x);
-    float most = x[0];
-    for (int i = 1; i < 8; ++i) most = x[i] > most ? x[i] : most;
-    return most;
+    const Float8 b = max(lower(a), upper(a));
+    __m128 c = _mm_max_ps(quarter(b, false), quarter(b, true));
+    c = _mm_max_ps(c, _mm_movehl_ps(c, c));
+    return _mm_cvtss_f32(_mm_max_ss(c, _mm_shuffle_ps(c, c, 1)));
 }
 
 }  // namespace glint::GLINT_ISA
