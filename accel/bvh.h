@@ -25,7 +25,7 @@ struct BvhTree {
     using Units = std::vector<Unit, HugePageAllocator<Unit>>;
     Units units;  // empty for an empty scene
     Aabb bounds;
-    int depth = 0;  // levels of nodes
+    int depth = 0;             // levels of nodes
     float leaf_extent = 0.0f;  // see BvhView
     std::size_t nodes = 0, leaves = 0;
 

@@ -3,12 +3,16 @@
 // Grot 2015, "Asynchronous Memory Access Chaining"). Invariant: each ray goes the way that traverse() would take it.
 #pragma once
 
+#include "accel/bvh_prepare.h"
 #include "accel/bvh_single.h"
 
 namespace glint::GLINT_ISA {
 
-// Of 8, 12, 16, 24 and 32, sixteen gives the most rays a second on meshes that do not fit the caches.
-constexpr int kInFlight = 16;
+// Of 8, 12, 16, 24 and 32, 24 gives the most rays a second on meshes that do not fit the caches.
+constexpr int kInFlight = 24;
+
+// At the bottom of each stack; it looks like a leaf.
+constexpr BvhRef kDone = ~0u;
 
 struct Flight {
     RayScalars scalars;
@@ -17,6 +21,21 @@ struct Flight {
     BvhRef at;
     int index;  // of the ray in its batch
     TraversalStack stack;
+
+    void start() noexcept {
+        at = 0;
+        stack.ref[0] = kDone;
+        stack.near[0] = -HUGE_VALF;
+        stack.top = 1;
+    }
+    // Takes what is next from the stack. Without sorting there is nothing to compare.
+    template <bool any>
+    void pop() noexcept {
+        do {
+            --stack.top;
+        } while (!any && stack.near[stack.top] > best.t);
+        at = stack.ref[stack.top];
+    }
 };
 
 inline void fetch(const BvhView& bvh, BvhRef ref) noexcept {
@@ -25,66 +44,79 @@ inline void fetch(const BvhView& bvh, BvhRef ref) noexcept {
     _mm_prefetch(p + 64, _MM_HINT_T0);
     _mm_prefetch(p + 128, _MM_HINT_T0);
     _mm_prefetch(p + 192, _MM_HINT_T0);
-    if ((ref & kLeafBit) != 0) _mm_prefetch(p + 256, _MM_HINT_T0);
+    _mm_prefetch(p + 256, _MM_HINT_T0);
 }
 
-// Returns true when the ray is done.
+// Pushes all children entered, none or many alike, and pops one: no branch hangs on how many.
 template <bool any>
-inline bool step(const BvhView& bvh, Flight& f) noexcept {
-    if ((f.at & kLeafBit) == 0) {
-        const BvhNode& node = bvh.at<BvhNode>(f.at);
-        Float8 near;
-        const unsigned mask = enter(node, SlabRay(f.scalars), Float8::set(f.best.t), near);
-        if (mask != 0) {
-            if ((mask & (mask - 1)) == 0) {
-                f.at = node.child[__builtin_ctz(mask)];
-            } else if constexpr (any) {
-                f.at = push_unsorted(f.stack, node, mask);
-            } else {
-                f.at = push_children(f.stack, node, mask, 3 * f.scalars.octant, near);
-            }
-            fetch(bvh, f.at);
-            return false;
-        }
+inline void step_node(const BvhView& bvh, Flight& f) noexcept {
+    const BvhNode& node = bvh.at<BvhNode>(f.at);
+    Float8 near;
+    const unsigned mask = enter(node, SlabRay(f.scalars), Float8::set(f.best.t), near);
+    if constexpr (any) {
+        push_all_unsorted(f.stack, node, mask);
     } else {
-        const PrimitiveId before = f.best.primitive;
-        meet_leaf<any>(f.at, LeafRay(f.ray, f.scalars, bvh), f.best);
-        if (any && f.best.primitive != before) return true;
+        push_all(f.stack, node, mask, 3 * f.scalars.octant, near);
     }
-    do {
-        if (f.stack.top == 0) return true;
-        --f.stack.top;
-    } while (!any && f.stack.near[f.stack.top] > f.best.t);
-    f.at = f.stack.ref[f.stack.top];
-    fetch(bvh, f.at);
-    return false;
+    f.pop<any>();
 }
 
-// next(Flight&) starts the next ray (ray, best and index) or returns false when there is none; done(const Flight&) takes one
-// back.
-template <bool any, class Next, class Done>
-inline void traverse_in_flight(const BvhView& bvh, Next next, Done done) noexcept {
+// wanted(i): whether ray i is to be traced; begin(Flight&) sets what it has to beat; done(const Flight&) takes it back.
+template <bool any, class Wanted, class Begin, class Done>
+inline void traverse_in_flight(const BvhView& bvh, const RayBatch& rays, Wanted wanted, Begin begin, Done done) noexcept {
     Flight flights[kInFlight];
-    Flight* live[kInFlight];
-    int count = 0;
+    // Rays that are to take a node next and rays that are to take a leaf, apart: what a step does is known beforehand.
+    Flight *nodes[kInFlight], *leaves[kInFlight];
+    int node_count = 0, leaf_count = 0;
+    PreparedRays prepared;
+    int i = 0;
     const auto start = [&](Flight& f) {
-        while (next(f)) {
-            f.scalars = prepare(&f.ray.origin.x, &f.ray.direction.x, bvh.magnitude, f.ray.t_max);
-            f.at = 0;
-            f.stack.top = 0;
-            if (f.scalars.usable) return true;
+        for (; i < rays.count; ++i) {
+            if (i % kGroup == 0) prepared.prepare(rays, i, bvh.magnitude);
+            if (!prepared.usable(i % kGroup) || !wanted(i)) continue;
+            prepared.share(i % kGroup, f.scalars);
+            for (int k = 0; k < 3; ++k) {
+                (&f.ray.origin.x)[k] = rays.origin[k][i];
+                (&f.ray.direction.x)[k] = rays.direction[k][i];
+            }
+            f.ray.t_max = rays.t_max[i];
+            f.index = i++;
+            f.start();
+            begin(f);
+            nodes[node_count++] = &f;
+            return;
         }
-        return false;
     };
-    while (count < kInFlight && start(flights[count])) {
-        live[count] = &flights[count];
-        ++count;
-    }
-    while (count > 0) {
-        for (int i = 0; i < count; ++i) {
-            if (!step<any>(bvh, *live[i])) continue;
-            done(*live[i]);
-            if (!start(*live[i])) live[i--] = live[--count];
+    const auto go_on = [&](Flight* f) {
+        fetch(bvh, f->at);
+        const bool leaf = (f->at & kLeafBit) != 0;
+        leaves[leaf_count] = f;
+        nodes[node_count] = f;
+        leaf_count += leaf ? 1 : 0;
+        node_count += leaf ? 0 : 1;
+    };
+    for (Flight& f : flights) start(f);
+    while (node_count + leaf_count > 0) {
+        const int at_nodes = node_count;
+        node_count = 0;
+        for (int k = 0; k < at_nodes; ++k) {
+            Flight* f = nodes[k];
+            step_node<any>(bvh, *f);
+            go_on(f);
+        }
+        const int at_leaves = leaf_count;
+        leaf_count = 0;
+        for (int k = 0; k < at_leaves; ++k) {
+            Flight* f = leaves[k];
+            const PrimitiveId before = f->best.primitive;
+            if (f->at != kDone) meet_leaf<any>(f->at, LeafRay(f->ray, f->scalars, bvh), f->best);
+            if (f->at == kDone || (any && f->best.primitive != before)) {
+                done(*f);
+                start(*f);
+                continue;
+            }
+            f->template pop<any>();
+            go_on(f);
         }
     }
 }

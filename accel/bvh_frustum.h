@@ -1,5 +1,5 @@
-// Sixty-four rays from one point through the tree together, judged by their common span alone until a leaf is reached: the cost of
-// a node does not depend on the number of rays. Pays where the span is no wider than a leaf: the samples of a few pixels.
+// Sixty-four rays from one point through the tree together, judged by their common span alone until a leaf is reached: the cost
+// of a node does not depend on the number of rays. Pays where the span is no wider than a leaf: the samples of a few pixels.
 // Closest hits only. Invariant: the answers are those of traverse() for each ray.
 #pragma once
 
@@ -31,7 +31,8 @@ inline void traverse_frustum(const BvhView& bvh, Group* groups, const Span* span
             Float8 depth;
             const unsigned mask = test(node.bounds, Float8::set(end), depth);
             if (mask != 0) {
-                at = (mask & (mask - 1)) == 0 ? node.child[__builtin_ctz(mask)] : push_children(stack, node, mask, 3 * octant, depth);
+                at = (mask & (mask - 1)) == 0 ? node.child[__builtin_ctz(mask)]
+                                              : push_children(stack, node, mask, 3 * octant, depth);
                 continue;
             }
         } else if (static_cast<PrimitiveKind>(leaf_kind(at)) == PrimitiveKind::triangle) {

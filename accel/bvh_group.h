@@ -4,10 +4,9 @@
 #pragma once
 
 #include "accel/bvh_leaves.h"
+#include "accel/bvh_prepare.h"
 
 namespace glint::GLINT_ISA {
-
-constexpr int kGroup = 16;
 
 // The rays of a group lie, along the axis k between two depths, between planes through the other two axes x and y:
 // lo.slope z + lo.offset <= x <= hi.slope z + hi.offset. Padded by what a computed hit may stray (accel/README.md).
@@ -20,9 +19,9 @@ struct Extent {
 };
 struct Span {
     int kx, ky, kz;
-    bool forward;       // whether the rays go up the axis
-    bool common;        // whether they start at one point
-    float za, zb;       // the two depths, as coordinates
+    bool forward;  // whether the rays go up the axis
+    bool common;   // whether they start at one point
+    float za, zb;  // the two depths, as coordinates
     Extent x, y;
     SpanPlane lo_x, hi_x, lo_y, hi_y;
     float z_start;  // depth (z, or -z where not forward) before which no ray starts

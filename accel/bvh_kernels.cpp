@@ -28,37 +28,30 @@ void load(const RayBatch& rays, int i, Ray& ray) noexcept {
 }
 
 void closest_in_flight(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) noexcept {
-    int i = 0;
-    const auto next = [&](Flight& f) {
-        if (i == rays.count) return false;
-        load(rays, i, f.ray);
-        f.best.t = hits.t[i];
-        f.best.primitive = hits.primitive[i];
-        f.best.u = hits.u[i];
-        f.best.v = hits.v[i];
-        f.index = i++;
-        return true;
+    const auto begin = [&](Flight& f) {
+        f.best.t = hits.t[f.index];
+        f.best.u = hits.u[f.index];
+        f.best.v = hits.v[f.index];
+        f.best.primitive = hits.primitive[f.index];
     };
-    traverse_in_flight<false>(bvh, next, [&](const Flight& f) {
-        hits.t[f.index] = f.best.t;
-        hits.u[f.index] = f.best.u;
-        hits.v[f.index] = f.best.v;
-        hits.primitive[f.index] = f.best.primitive;
-    });
+    traverse_in_flight<false>(
+        bvh, rays, [](int) { return true; }, begin,
+        [&](const Flight& f) {
+            hits.t[f.index] = f.best.t;
+            hits.u[f.index] = f.best.u;
+            hits.v[f.index] = f.best.v;
+            hits.primitive[f.index] = f.best.primitive;
+        });
 }
 
 void occluded_in_flight(const BvhView& bvh, const RayBatch& rays, bool* result) noexcept {
-    int i = 0;
-    const auto next = [&](Flight& f) {
-        while (i < rays.count && result[i]) ++i;
-        if (i == rays.count) return false;
-        load(rays, i, f.ray);
-        f.best.t = rays.t_max[i];
+    const auto begin = [&](Flight& f) {
+        f.best.t = rays.t_max[f.index];
         f.best.primitive = kNoPrimitive;
-        f.index = i++;
-        return true;
     };
-    traverse_in_flight<true>(bvh, next, [&](const Flight& f) { result[f.index] = f.best.primitive != kNoPrimitive; });
+    traverse_in_flight<true>(
+        bvh, rays, [&](int i) { return !result[i]; }, begin,
+        [&](const Flight& f) { result[f.index] = f.best.primitive != kNoPrimitive; });
 }
 
 unsigned octant_of(const RayBatch& rays, int i) noexcept {
@@ -127,7 +120,8 @@ void closest_coherent(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) 
                 for (int k = at; k < at + kGroup && k < rays.count; ++k) closest_of(bvh, rays, k, hits);
                 continue;
             }
-            if (!together) traverse_group<false>(bvh, groups[i], spans[i], GroupSlabs(groups[i], padding[i]), octant_of(rays, at));
+            if (!together)
+                traverse_group<false>(bvh, groups[i], spans[i], GroupSlabs(groups[i], padding[i]), octant_of(rays, at));
             end(groups[i], hits);
         }
     }

@@ -79,7 +79,7 @@ struct Corners {
 // The lanes against triangles `m` of a block.
 template <bool any>
 inline void meet_triangles(const TriangleBlock& b, unsigned m, const Span& span, unsigned lanes, Group& g) noexcept {
-    const auto meet_all = [&](auto common, const float (*v)[kBvhWidth]) {
+    const auto meet_all = [&](auto common, const float(*v)[kBvhWidth]) {
         for (; m != 0; m &= m - 1) {
             const int k = __builtin_ctz(m);
             g.meet<any, decltype(common)::value>(v, b.id[k], k, span, any ? lanes & g.active : lanes);

@@ -6,6 +6,8 @@
 
 namespace glint::GLINT_ISA {
 
+constexpr int kGroup = 16;
+
 class PreparedRays {
 public:
     // Rays first to first + 15 of the batch; what lies beyond its count is of no meaning.
@@ -71,11 +73,11 @@ public:
     }
 
 private:
-    alignas(64) float reciprocal_[3][16], near_offset_[3][16], far_offset_[3][16];
-    alignas(64) float shear_x_[16], shear_y_[16], inverse_z_[16];
-    const RayBatch* rays_;
-    int first_;
-    unsigned axis_x_, axis_y_, usable_, forward_[3];
+    alignas(64) float reciprocal_[3][kGroup], near_offset_[3][kGroup], far_offset_[3][kGroup];
+    alignas(64) float shear_x_[kGroup], shear_y_[kGroup], inverse_z_[kGroup];
+    const RayBatch* rays_ = nullptr;
+    int first_ = 0;
+    unsigned axis_x_ = 0, axis_y_ = 0, usable_ = 0, forward_[3] = {};
 };
 
 }  // namespace glint::GLINT_ISA

@@ -8,7 +8,7 @@ namespace glint::GLINT_ISA {
 
 // Each level leaves at most seven siblings behind.
 constexpr int kMaxBvhLevels = 64;
-constexpr int kStackSize = kMaxBvhLevels * (kBvhWidth - 1) + kBvhWidth;
+constexpr int kStackSize = kMaxBvhLevels * (kBvhWidth - 1) + 2 * kBvhWidth;
 
 struct TraversalStack {
     int top = 0;  // first, beside what else a ray in flight keeps at hand
@@ -46,6 +46,40 @@ inline BvhRef push_children(TraversalStack& stack, const BvhNode& node, unsigned
     }
     stack.top = top - 1;
     return nearest;
+#endif
+}
+
+// Pushes all children of `mask`, none or many, far to near.
+inline void push_all(TraversalStack& stack, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
+#if defined(__AVX512VL__)
+    const __m256i order =
+        _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(shift));
+    const __m256 inf = _mm256_set1_ps(HUGE_VALF);
+    const __m256 sorted = _mm256_permutexvar_ps(order, _mm256_mask_blend_ps(static_cast<__mmask8>(mask), inf, near.v));
+    const __m256i refs = _mm256_permutexvar_epi32(order, _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child)));
+    const __mmask8 present = _mm256_cmp_ps_mask(sorted, inf, _CMP_LT_OQ);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + stack.top), _mm256_maskz_compress_epi32(present, refs));
+    _mm256_storeu_ps(stack.near + stack.top, _mm256_maskz_compress_ps(present, sorted));
+    stack.top += __builtin_popcount(mask);
+#else
+    alignas(32) float distance[kBvhWidth];
+    near.store(distance);
+    for (int i = 0; i < kBvhWidth; ++i) {
+        const unsigned k = node.order[i] >> shift & 7u;
+        stack.ref[stack.top] = node.child[k];
+        stack.near[stack.top] = distance[k];
+        stack.top += static_cast<int>(mask >> k & 1u);
+    }
+#endif
+}
+inline void push_all_unsorted(TraversalStack& stack, const BvhNode& node, unsigned mask) noexcept {
+#if defined(__AVX512VL__)
+    const __m256i refs = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + stack.top),
+                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), refs));
+    stack.top += __builtin_popcount(mask);
+#else
+    for (; mask != 0; mask &= mask - 1) stack.ref[stack.top++] = node.child[__builtin_ctz(mask)];
 #endif
 }
 

@@ -34,7 +34,8 @@ inline bool bound_by_planes(const Extent& e, float za, float zb, float padding, 
 }
 
 inline bool bound_by_planes(Span& s) noexcept {
-    return bound_by_planes(s.x, s.za, s.zb, s.padding, s.lo_x, s.hi_x) && bound_by_planes(s.y, s.za, s.zb, s.padding, s.lo_y, s.hi_y);
+    return bound_by_planes(s.x, s.za, s.zb, s.padding, s.lo_x, s.hi_x) &&
+           bound_by_planes(s.y, s.za, s.zb, s.padding, s.lo_y, s.hi_y);
 }
 
 // The span of all `count` groups together; false where they do not lie side by side or do not share axis and depths.
