@@ -4,13 +4,14 @@
 
 namespace glint {
 
-std::shared_ptr<const AnyAccelerator> build_accelerator(AcceleratorKind kind, std::shared_ptr<const Geometry> geometry) {
+std::shared_ptr<const AnyAccelerator> build_accelerator(AcceleratorKind kind, std::shared_ptr<const Geometry> geometry,
+                                                        const ParallelFor& parallel_for) {
     switch (kind) {
         case AcceleratorKind::none: return std::make_shared<const AnyAccelerator>(BruteForce(std::move(geometry)));
         case AcceleratorKind::grid: return std::make_shared<const AnyAccelerator>(UniformGrid(std::move(geometry)));
         case AcceleratorKind::bvh: break;
     }
-    return std::make_shared<const AnyAccelerator>(Bvh(std::move(geometry)));
+    return std::make_shared<const AnyAccelerator>(Bvh(std::move(geometry), parallel_for));
 }
 
 std::optional<AcceleratorKind> accelerator_named(std::string_view name) {

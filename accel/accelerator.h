@@ -14,6 +14,7 @@
 
 #include "accel/brute_force.h"
 #include "accel/bvh.h"
+#include "accel/parallel.h"
 #include "accel/uniform_grid.h"
 
 namespace glint {
@@ -36,9 +37,10 @@ enum class AcceleratorKind { none, grid, bvh };
 constexpr std::array<std::string_view, 3> kAcceleratorNames{"none", "grid", "bvh"};
 using AnyAccelerator = std::variant<BruteForce, UniformGrid, Bvh>;  // in the order of AcceleratorKind
 
-// Builds on the calling thread; throws std::bad_alloc when memory does not suffice.
+// Throws std::bad_alloc when memory does not suffice, std::length_error when ids do not, and what parallel_for throws.
 [[nodiscard]] std::shared_ptr<const AnyAccelerator> build_accelerator(AcceleratorKind kind,
-                                                                      std::shared_ptr<const Geometry> geometry);
+                                                                      std::shared_ptr<const Geometry> geometry,
+                                                                      const ParallelFor& parallel_for = serial_for);
 [[nodiscard]] std::optional<AcceleratorKind> accelerator_named(std::string_view name);
 [[nodiscard]] Hit closest_hit(const AnyAccelerator& accelerator, const Ray& ray) noexcept;
 [[nodiscard]] bool occluded(const AnyAccelerator& accelerator, const Ray& ray) noexcept;

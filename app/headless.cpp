@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "accel/isa.h"
 #include "core/accelerator_cache.h"
 #include "core/image.h"
 #include "core/renderer.h"
@@ -27,6 +28,8 @@ extern "C" void request_stop(int signal) {
     stop_signal = signal;
     stop_requested = true;
 }
+
+std::string_view name_of(Isa isa) { return kIsaNames[static_cast<std::size_t>(isa)]; }
 
 void replace_all(std::string& text, const std::string& field, const std::string& value) {
     for (std::size_t at = text.find(field); at != std::string::npos; at = text.find(field, at + value.size())) {
@@ -123,7 +126,7 @@ nlohmann::json stats(const Job& job, const Options& o, const Progress& p, double
             {"depth_cut_branches", r.depth_cut},
             {"depth_cut_weight", r.depth_cut_weight},
             {"relative_standard_error", error},
-            {"isa", "baseline"}};
+            {"isa", name_of(isa_in_use())}};
 }
 
 }  // namespace
@@ -148,7 +151,7 @@ int run_render(const Options& o) {
 
     std::signal(SIGINT, request_stop);
     std::signal(SIGTERM, request_stop);
-    AcceleratorCache cache(job.scene);
+    AcceleratorCache cache(job.scene, job.threads);
     frame.accelerator = cache.wait(job.accelerator);
     const std::size_t accelerator_bytes = memory_bytes(*frame.accelerator);
 
@@ -156,12 +159,13 @@ int run_render(const Options& o) {
     renderer.restart(frame);
     ProgressLine line(o.quiet, job.spp);
     Progress p = renderer.progress();
-    while (!p.finished && p.seconds < o.time && !stop_requested) {
+    while (!p.finished && !p.out_of_memory && p.seconds < o.time && !stop_requested) {
         renderer.wait(std::min(o.time, p.seconds + 0.25), &stop_requested);
         p = renderer.progress();
         line.show(p);
     }
     line.end();
+    if (p.out_of_memory) throw std::bad_alloc();
 
     Image image;
     renderer.resolve(image);
@@ -216,6 +220,7 @@ int run_info(const Options& o) {
     fmt::print("features{}\n", features);
     const AcceleratorKind kind = automatic_accelerator(*scene);
     fmt::print("accelerator {} ({} bounded primitives)\n", kAcceleratorNames[static_cast<std::size_t>(kind)], g.bounded_count());
+    fmt::print("isa {} ({})\n", name_of(isa_in_use()), o.isa ? "as asked for" : "the best that this machine supports");
     for (const std::string& w : scene->warnings) fmt::print("warning {}\n", w);
     return 0;
 }
@@ -230,7 +235,14 @@ int run_list() {
     for (const auto name : kSamplerNames) fmt::print(" {}", name);
     fmt::print("\nFeatures\n ");
     for (const auto name : kFeatureNames) fmt::print(" {}", name);
-    fmt::print("\n");
+    fmt::print("\nInstruction sets\n");
+    for (std::size_t i = 0; i < kIsaNames.size(); ++i) {
+        const auto isa = static_cast<Isa>(i);
+        const std::string_view state = isa == isa_in_use() ? "chosen"
+                                       : supported(isa)    ? "supported"
+                                                           : "not supported by this machine";
+        fmt::print("  {:<9} {}\n", kIsaNames[i], state);
+    }
     return 0;
 }
 

@@ -36,6 +36,8 @@ int view(const glint::Options& o) {
 }
 
 int run(const glint::Options& o) {
+    // Before anything is built: accelerators keep the instruction set they were built for.
+    if (o.isa) glint::use_isa(*o.isa);
     switch (o.command) {
         case glint::Command::view: return view(o);
         case glint::Command::render: return glint::run_render(o);

@@ -23,8 +23,8 @@ constexpr std::string_view kUsage =
     "  glint [view] [SCENE] [OPTION...]        open the viewer (no SCENE: the showpiece)\n"
     "  glint render SCENE -o OUT [OPTION...]   render to a .png or .pfm file, without any window\n"
     "  glint compare A B [--reference-threshold X]       RMSE and largest difference of two pictures\n"
-    "  glint info SCENE                        what a scene holds and which accelerator it gets\n"
-    "  glint list                              built-in scenes, accelerators, samplers, features\n\n"
+    "  glint info SCENE                        what a scene holds, which accelerator and kernels it gets\n"
+    "  glint list                              built-in scenes, accelerators, samplers, instruction sets\n\n"
     "SCENE is a .p3f, .nff, .gltf, .glb, .ply or .ply.gz file, or builtin:NAME[,key=value...].\n";
 
 // One CLI::App that fills `o`; each value is checked where it is declared.
@@ -33,6 +33,11 @@ public:
     explicit Parser(Options& options) : o_(options) {
         app_.set_version_flag("--version", "glint " GLINT_VERSION);
         app_.allow_extras();
+    }
+
+    void machine_options() {
+        text("--isa", "auto|baseline|avx2|avx512", "instruction set of the BVH; all give the same picture",
+             [this](auto n, auto v) { o_.isa = chosen_isa(n, v); });
     }
 
     void render_options() {
@@ -209,6 +214,19 @@ FeatureSet edit_features(std::string_view list, FeatureSet start, bool& whitted)
     return set;
 }
 
+std::optional<Isa> chosen_isa(std::string_view option, std::string_view value, bool (*has)(Isa) noexcept) {
+    constexpr std::array<std::string_view, 4> names{"auto", "baseline", "avx2", "avx512"};
+    const std::size_t i = choice(option, value, names);
+    if (i == 0) return std::nullopt;
+    const auto isa = static_cast<Isa>(i - 1);
+    if (has(isa)) return isa;
+    std::string known;
+    for (std::size_t k = 0; k < kIsaNames.size(); ++k) {
+        if (has(static_cast<Isa>(k))) known += fmt::format(" {}", kIsaNames[k]);
+    }
+    throw UsageError(fmt::format("{}: this machine does not support '{}', only{}", option, value, known));
+}
+
 std::optional<Options> parse_options(const std::vector<std::string>& words) {
     Options o;
     std::vector<std::string> rest = words;
@@ -222,6 +240,7 @@ std::optional<Options> parse_options(const std::vector<std::string>& words) {
     Parser parser(o);
     const bool renders = o.command == Command::view || o.command == Command::render;
     if (renders) parser.render_options(), parser.camera_options();
+    if (renders || o.command == Command::info) parser.machine_options();
     if (o.command == Command::render) parser.output_options();
     if (o.command == Command::compare) parser.compare_options();
     if (!parser.parse(rest)) return std::nullopt;

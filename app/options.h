@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "accel/accelerator.h"
+#include "accel/isa.h"
 #include "app/option_values.h"
 #include "core/scene_io.h"
 #include "core/settings.h"
@@ -29,7 +30,8 @@ struct Options {
     int threads = 0;                                        // 0 = all that the process may use, -1 = all but one
     std::optional<AcceleratorKind> accelerator;             // empty = auto, or what the scene says
     bool accelerator_given = false;
-    std::string features;  // LIST as typed; empty = not given
+    std::optional<Isa> isa;  // empty = the best of this machine
+    std::string features;    // LIST as typed; empty = not given
     std::optional<int> depth;
     RenderSettings settings;  // what is independent of the scene
     std::optional<float> aperture, focus, view_angle;
@@ -65,6 +67,10 @@ struct Job {
 // LIST of --features applied to what the scene starts with: plain names replace the set, +name and -name edit it;
 // `all` and `whitted` are sets. centred_only tells whether `whitted` was among them, which also means one sample.
 [[nodiscard]] FeatureSet edit_features(std::string_view list, FeatureSet start, bool& whitted);
+
+// The instruction set that --isa names, if this machine has it; empty for `auto`.
+[[nodiscard]] std::optional<Isa> chosen_isa(std::string_view option, std::string_view value,
+                                            bool (*has)(Isa) noexcept = supported);
 
 // The threads the process may use: its affinity mask, limited by a cgroup's quota.
 [[nodiscard]] int available_threads();

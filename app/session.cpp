@@ -122,7 +122,7 @@ std::shared_ptr<const AnyAccelerator> Session::wanted_accelerator() {
         // Brute force needs no memory of its own, so this ends at a picture in any case.
         const AcceleratorKind fallback = accelerator_in_use().value_or(AcceleratorKind::none);
         messages_.push_back(
-            fmt::format("not enough memory for accelerator {}; using {}", name_of(wanted_kind()), name_of(fallback)));
+            fmt::format("accelerator {} is too large for this machine; using {}", name_of(wanted_kind()), name_of(fallback)));
         choices_.accelerator = fallback;
         accelerator = source_.request(fallback);
     }

@@ -76,6 +76,7 @@ private:
     ViewerInput input_;
 
     std::uint64_t generation_ = 0;  // of the submitted frame
+    bool too_large_ = false;        // that frame's picture for this memory
     Progress shown_;                // of the picture in the texture
     DisplaySettings shown_display_;
     Image image_;
@@ -83,7 +84,7 @@ private:
 };
 
 Viewer::Viewer(const ViewerOptions& options, std::unique_ptr<ViewerWindow> window)
-    : cache_(options.scene),
+    : cache_(options.scene, options.threads, BuildPriority::background),
       renderer_(std::max(1, options.threads), true),
       session_(options.scene, {options.settings, options.display, options.accelerator, options.spp},
                options.camera.value_or(options.scene->cameras.at(0)), source_of(cache_, *options.scene)),
@@ -173,6 +174,9 @@ void Viewer::run() {
             generation_ = renderer_.restart(std::move(*frame));
         for (const std::string& line : session_.take_messages()) fmt::print(stderr, "glint: {}\n", line);
         const Progress progress = renderer_.progress();
+        if (progress.out_of_memory && !too_large_)
+            fmt::print(stderr, "glint: not enough memory for a picture of this size; still showing the one before\n");
+        too_large_ = progress.out_of_memory;
         if (session_.resting(progress) != rested) renderer_.set_paused(rested = !rested);
         update_title(now);
         window_->wait_events(seconds_to_wait(progress, glfwGetTime()));

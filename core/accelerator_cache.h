@@ -1,11 +1,12 @@
-// Accelerators of one scene, each built at most once, in the background.
-// Knows no renderer. Invariant: request() never waits for a build.
+// Accelerators of one scene, each built at most once, in the background, on several threads.
+// Knows no renderer. Invariants: request() never waits for a build; the destructor waits no longer than one task of it.
 #pragma once
 
 #include <array>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "accel/accelerator.h"
@@ -16,30 +17,40 @@ namespace glint {
 // The accelerator `auto` means for this scene: none for a handful of primitives, else the BVH.
 [[nodiscard]] AcceleratorKind automatic_accelerator(const Scene& scene);
 
+// Who else wants the cores while something is built.
+enum class BuildPriority { normal, background };
+
 class AcceleratorCache {
 public:
-    explicit AcceleratorCache(std::shared_ptr<const Scene> scene);
+    // threads: that a build may use, those that wait for it not counted. background: they yield to other threads.
+    explicit AcceleratorCache(std::shared_ptr<const Scene> scene, int threads = 1,
+                              BuildPriority priority = BuildPriority::normal);
     ~AcceleratorCache();
     AcceleratorCache(const AcceleratorCache&) = delete;
     AcceleratorCache& operator=(const AcceleratorCache&) = delete;
 
     // The accelerator if it is built; otherwise null, and its build has been started.
     std::shared_ptr<const AnyAccelerator> request(AcceleratorKind kind);
-    // As request(), but waits. Throws std::bad_alloc when the build ran out of memory.
+    // As request(), but waits. Throws SceneError when the scene is too large for this accelerator or for the memory.
     std::shared_ptr<const AnyAccelerator> wait(AcceleratorKind kind);
     // Seconds the build took; 0 while not built.
     [[nodiscard]] double build_seconds(AcceleratorKind kind) const;
-    // True when the build ended without memory: request() will stay null.
+    // True when the build ended without a result: request() will stay null.
     [[nodiscard]] bool failed(AcceleratorKind kind) const;
 
 private:
     struct Slot {
         std::shared_ptr<const AnyAccelerator> accelerator;
         double seconds = 0.0;
-        bool started = false, failed = false;
+        bool started = false;
+        std::string failure;  // why there will be no accelerator; empty while there may
         std::jthread builder;
     };
+    void build(Slot& slot, AcceleratorKind kind, const std::stop_token& stop);
+
     std::shared_ptr<const Scene> scene_;
+    int threads_;
+    BuildPriority priority_;
     mutable std::mutex mutex_;
     std::condition_variable built_;
     std::array<Slot, kAcceleratorNames.size()> slots_;

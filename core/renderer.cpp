@@ -1,19 +1,18 @@
 #include "core/renderer.h"
 
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cassert>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <new>
+#include <stdexcept>
 #include <utility>
 
 #include "core/framebuffer.h"
 #include "core/render_plan.h"
+#include "core/threads.h"
 #include "core/tile_kernels.h"
 
 namespace glint {
@@ -37,11 +36,6 @@ struct Task {
     bool preview = false;
 };
 
-void lower_priority() {
-    // The window's thread must stay responsive on a machine whose cores are all rendering.
-    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10);
-}
-
 }  // namespace
 
 struct Renderer::State {
@@ -56,6 +50,7 @@ struct Renderer::State {
     std::uint64_t queue_generation = 0;
     std::size_t previews_left = 0, tiles_left = 0;
     bool paused = false, stopping = false;
+    std::uint64_t failed_generation = 0;  // of the frame that memory did not suffice for
     RayCounts counts;
     Clock::time_point running_since;
     double seconds_before = 0.0;  // until the last pause or the finish
@@ -74,7 +69,10 @@ struct Renderer::State {
             seconds_before = seconds();
         running = on;
     }
-    [[nodiscard]] bool finished() const { return order != nullptr && queue_generation == order->generation && tiles_left == 0; }
+    [[nodiscard]] bool failed() const { return order != nullptr && failed_generation == order->generation; }
+    [[nodiscard]] bool finished() const {
+        return order != nullptr && queue_generation == order->generation && tiles_left == 0 && !failed();
+    }
 
     // The first worker to look at a new order deals its tiles out; restart() itself stays O(1).
     void deal() {
@@ -92,11 +90,34 @@ struct Renderer::State {
         queue_generation = order->generation;
     }
 
-    void work_loop();
+    // A worker's life: all of it but for frames that are too large.
+    void run_worker() {
+        if (preview) lower_priority();
+        std::uint64_t current = 0;
+        for (bool stopped = false; !stopped;) {
+            try {
+                work_loop(current);
+                stopped = true;
+            } catch (const std::bad_alloc&) {
+                give_up(current);
+            }
+        }
+    }
+    // Returns when stopping; `current` is the generation of the frame it works on.
+    void work_loop(std::uint64_t& current);
+    // The frame can never be finished; the next one may be smaller.
+    void give_up(std::uint64_t generation_given_up) {
+        const std::lock_guard lock(mutex);
+        failed_generation = generation_given_up;
+        if (!failed()) return;
+        queue.clear();
+        queue_generation = failed_generation;
+        run_clock(false);
+        change.notify_all();
+    }
 };
 
-void Renderer::State::work_loop() {
-    if (preview) lower_priority();
+void Renderer::State::work_loop(std::uint64_t& current) {
     std::vector<PixelSum> sums;
     std::vector<glm::vec3> blocks;
     Workspace workspace;
@@ -106,6 +127,7 @@ void Renderer::State::work_loop() {
             return stopping || (order != nullptr && !paused && (queue_generation != order->generation || !queue.empty()));
         });
         if (stopping) return;
+        current = order->generation;
         if (queue_generation != order->generation) {
             deal();
             work.notify_all();
@@ -125,7 +147,7 @@ void Renderer::State::work_loop() {
                                        : render_tile(input, rect, first, last, sums, workspace);
         lock.lock();
         // A newer order makes this result worthless; it is dropped here and nowhere else.
-        if (!done || o->generation != order->generation) continue;
+        if (!done || o->generation != order->generation || failed()) continue;
         if (task.preview) {
             framebuffer->write_preview(task.tile, o->generation, blocks);
             if (--previews_left == 0) change.notify_all();
@@ -144,7 +166,16 @@ void Renderer::State::work_loop() {
 }
 
 Renderer::Renderer(int threads, bool preview) : state_(std::make_unique<State>(preview)) {
-    for (int i = 0; i < std::max(1, threads); ++i) workers_.emplace_back([this] { state_->work_loop(); });
+    workers_.reserve(static_cast<std::size_t>(std::max(1, threads)));
+    for (int i = 0; i < std::max(1, threads); ++i) {
+        try {
+            workers_.emplace_back([this] { state_->run_worker(); });
+        } catch (const std::exception&) {
+            // Fewer workers give the same picture.
+            if (workers_.empty()) throw std::runtime_error("no thread can be started");
+            break;
+        }
+    }
 }
 
 Renderer::~Renderer() {
@@ -202,7 +233,8 @@ Progress Renderer::progress() const {
     p.rays = s.counts;
     if (s.order == nullptr) return p;
     p.generation = s.order->generation;
-    if (s.queue_generation != s.order->generation) return p;
+    p.out_of_memory = s.failed();
+    if (s.queue_generation != s.order->generation || p.out_of_memory) return p;
     p.finished = s.finished();
     p.preview_complete = s.previews_left == 0;
     p.spp_min = s.order->frame.spp;
@@ -224,7 +256,7 @@ double Renderer::relative_standard_error() const {
 bool Renderer::resolve(Image& image) const {
     const State& s = *state_;
     std::unique_lock lock(s.mutex);
-    if (s.order == nullptr || s.queue_generation != s.order->generation || s.previews_left > 0) return false;
+    if (s.order == nullptr || s.queue_generation != s.order->generation || s.previews_left > 0 || s.failed()) return false;
     const std::uint64_t shown = s.order->generation;
     const std::shared_ptr<const Framebuffer> framebuffer = s.framebuffer;
     lock.unlock();
@@ -243,14 +275,14 @@ bool Renderer::resolve(Image& image) const {
 int Renderer::resolve_pass(Image& image) const {
     const State& s = *state_;
     const std::lock_guard lock(s.mutex);
-    if (s.order == nullptr || s.queue_generation != s.order->generation) return 0;
+    if (s.order == nullptr || s.queue_generation != s.order->generation || s.failed()) return 0;
     return s.framebuffer->resolve_pass(s.order->generation, image);
 }
 
 void Renderer::wait(double deadline_seconds, const std::atomic<bool>* stop) const {
     const State& s = *state_;
     std::unique_lock lock(s.mutex);
-    while (!s.finished() && s.seconds() < deadline_seconds && !(stop != nullptr && stop->load())) {
+    while (!s.finished() && !s.failed() && s.seconds() < deadline_seconds && !(stop != nullptr && stop->load())) {
         // Signals only set a flag, so it is looked at a few dozen times a second.
         s.change.wait_for(lock, std::chrono::milliseconds(20));
     }

@@ -32,6 +32,7 @@ struct Progress {
     std::uint64_t generation = 0;   // of the frame that is being rendered
     bool preview_complete = false;  // the coarse first look (or more) covers the whole picture
     bool finished = false;          // every pixel has its samples
+    bool out_of_memory = false;     // the picture is too large: this frame never finishes, a later one may
     int spp_min = 0, spp_max = 0;   // samples a pixel so far
     double seconds = 0.0;           // since restart(), pauses excluded; stands still when finished
     RayCounts rays;                 // and the samples and branches that were dropped
@@ -39,7 +40,8 @@ struct Progress {
 
 class Renderer {
 public:
-    // threads >= 1. preview: render a coarse picture first after each restart (the viewer wants it, a file does not).
+    // threads >= 1; fewer where the system refuses some, std::runtime_error where it refuses all. preview: render a coarse
+    // picture first after each restart (the viewer wants it, a file does not).
     Renderer(int threads, bool preview);
     ~Renderer();
     Renderer(const Renderer&) = delete;
@@ -59,7 +61,7 @@ public:
     // Root mean square of the pixels' standard errors over the picture's mean, from the plain sample variance: an upper
     // bound for stratified samplers. 0 below two samples a pixel.
     [[nodiscard]] double relative_standard_error() const;
-    // Waits until finished or until `deadline` seconds of rendering passed or *stop is true (stop may be null).
+    // Waits until finished, out of memory or until `deadline` seconds of rendering passed or *stop is true (stop may be null).
     void wait(double deadline_seconds, const std::atomic<bool>* stop) const;
     [[nodiscard]] int threads() const { return static_cast<int>(workers_.size()); }
 

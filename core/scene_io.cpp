@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <new>
+#include <stdexcept>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -38,9 +40,7 @@ std::shared_ptr<const Scene> load_file(const std::string& name, const LoadOption
     throw SceneError(fmt::format("{}: unknown kind of scene, expected {}", name, kReadable));
 }
 
-}  // namespace
-
-std::shared_ptr<const Scene> load_scene(const std::string& scene, const LoadOptions& options) {
+std::shared_ptr<const Scene> load(const std::string& scene, const LoadOptions& options) {
     // A sky box that is replaced need not even exist, so the scene's own is not opened then.
     const bool replaced = options.load_environment && !options.environment.empty();
     LoadOptions own = options;
@@ -52,6 +52,18 @@ std::shared_ptr<const Scene> load_scene(const std::string& scene, const LoadOpti
     load_cube(copy->environment, options.environment);
     copy->environment.kind = Environment::Kind::cube;
     return copy;
+}
+
+}  // namespace
+
+std::shared_ptr<const Scene> load_scene(const std::string& scene, const LoadOptions& options) {
+    // Readers let these pass: only here nothing of the scene holds memory any more, and the line can be written.
+    try {
+        return load(scene, options);
+    } catch (const std::bad_alloc&) {
+    } catch (const std::length_error&) {
+    }
+    throw SceneError(fmt::format("{}: not enough memory for this scene", scene));
 }
 
 std::string reader::read_file(const fs::path& path, std::size_t limit) {

@@ -1,6 +1,7 @@
 // The one door for scenes: a path or `builtin:NAME[,key=value...]` in, a finished Scene out.
 // Knows which reader serves which ending; the readers know nothing of each other.
-// Errors: SceneError with `path:line: reason`; what was merely skipped stands in Scene::warnings.
+// Errors: SceneError with `path:line: reason`, also when memory does not suffice; what was merely skipped stands in
+// Scene::warnings.
 #pragma once
 
 #include <filesystem>

@@ -1,64 +1,14 @@
 // The program as a stranger calls it: exit codes, messages of one line, files whole or absent, options that do what they say.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
-#include <algorithm>
 #include <csignal>
-#include <filesystem>
-#include <fstream>
 #include <thread>
 
-#include <fmt/format.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include "core/image.h"
+#include "tests/app/command_line.h"
 
 namespace glint {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Outcome {
-    int code = -1;
-    std::string out, err;
-};
-
-class CommandLine : public testing::Test {
-protected:
-    void SetUp() override {
-        folder = fs::temp_directory_path() / fmt::format("glint-cli-{}", getpid());
-        fs::create_directories(folder);
-    }
-    void TearDown() override { fs::remove_all(folder); }
-
-    [[nodiscard]] std::string path(const std::string& name) const { return (folder / name).string(); }
-    [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
-        std::ofstream(folder / name, std::ios::binary) << text;
-        return path(name);
-    }
-    static std::string contents(const std::string& name) {
-        std::ifstream in(name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    // Runs `glint ARGUMENTS` in a shell.
-    [[nodiscard]] Outcome glint(const std::string& arguments) const {
-        const std::string out = path("stdout"), err = path("stderr");
-        const std::string command = fmt::format("'{}' {} >'{}' 2>'{}' </dev/null", GLINT_BINARY, arguments, out, err);
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : 256 + WTERMSIG(status), contents(out), contents(err)};
-    }
-    void expect_refused(const std::string& arguments, int code, const std::string& part) const {
-        const Outcome r = glint(arguments);
-        EXPECT_EQ(r.code, code) << arguments << "\n" << r.err;
-        EXPECT_NE(r.err.find(part), std::string::npos) << arguments << "\n" << r.err;
-        EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << arguments << "\n" << r.err;
-        EXPECT_EQ(r.out, "") << arguments;
-    }
-
-    fs::path folder;
-    const std::string quick = "render builtin:balls,level=1 --resolution 32x24 --spp 2 ";
-};
 
 TEST_F(CommandLine, BadUsageIsOneLineAndExit2) {
     expect_refused("render builtin:balls -o x.png --spq 3", 2, "unknown option '--spq'; did you mean '--spp'?");
@@ -247,11 +197,11 @@ TEST_F(CommandLine, HelpVersionListAndInfoGoToStdout) {
     const Outcome help = glint("render --help");
     EXPECT_EQ(help.code, 0);
     for (const char* option :
-         {"--resolution", "--spp", "--features", "--accel", "--crop", "--stats", "--hdri-file", "--camera-view-up"}) {
+         {"--resolution", "--spp", "--features", "--accel", "--isa", "--crop", "--stats", "--hdri-file", "--camera-view-up"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     }
     // What is not built yet is not promised.
-    for (const char* option : {"--noise", "--preset", "--checkpoint", "--isa"})
+    for (const char* option : {"--noise", "--preset", "--checkpoint"})
         EXPECT_EQ(help.out.find(option), std::string::npos) << option;
     EXPECT_NE(glint("--help").out.find("Keys"), std::string::npos);
     EXPECT_NE(glint("--version").out.find("glint "), std::string::npos);
