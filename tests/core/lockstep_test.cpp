@@ -124,6 +124,22 @@ TEST_F(Lockstep, TheSameBitsInBatchesOfAnySizeForEveryPart) {
     EXPECT_FALSE(equal_bits(pictures[kernel_part::mirror], pictures[kernel_part::mirror | kernel_part::fuzzy]));
 }
 
+// Batches of one are traced ray by ray, full ones as packets and as rays in flight.
+TEST_F(Lockstep, TheSameBitsInEveryInstructionSetAndBatch) {
+    Workspace work;
+    const RenderPlan plan = plan_of(kernel_part::count - 1);
+    const std::vector<CameraSample> list = samples(plan);
+    const std::vector<glm::vec3> expected = trace(plan, list, 1, work);
+    for (const Isa isa : {Isa::baseline, Isa::avx2, Isa::avx512}) {
+        if (!supported(isa)) continue;
+        accelerator = Bvh(scene->geometry, serial_for, isa);
+        for (const std::size_t size : {1u, 15u, 17u, 256u}) {
+            EXPECT_TRUE(equal_bits(expected, trace(plan, list, size, work)))
+                << kIsaNames[static_cast<std::size_t>(isa)] << ' ' << size;
+        }
+    }
+}
+
 TEST_F(Lockstep, TheSameBitsInAnyOrder) {
     Workspace work;
     const RenderPlan plan = plan_of(kernel_part::count - 1);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "accel/isa.h"
 #include "core/accelerator_cache.h"
 #include "core/renderer.h"
 #include "core/scene_io.h"
@@ -36,6 +37,18 @@ inline Image render_picture(const std::shared_ptr<const Scene>& scene, const Pic
     EXPECT_TRUE(renderer.resolve(image));
     if (progress != nullptr) *progress = renderer.progress();
     return image;
+}
+
+// Calls test(isa) with each instruction set of this machine in use; accelerators built in there trace with it.
+template <class Test>
+void for_each_isa(Test test) {
+    const Isa before = isa_in_use();
+    for (const Isa isa : {Isa::baseline, Isa::avx2, Isa::avx512}) {
+        if (!supported(isa)) continue;
+        use_isa(isa);
+        test(isa);
+    }
+    use_isa(before);
 }
 
 // Number of pixels that are not equal to the bit.

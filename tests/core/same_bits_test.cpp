@@ -50,6 +50,19 @@ TEST_P(SameBits, FromEveryAcceleratorAndThreadCount) {
     }
 }
 
+// Single rays, packets and rays in flight all occur here; same_hit_test compares each of them by itself.
+TEST_P(SameBits, FromEveryInstructionSet) {
+    Picture p = picture(3);
+    p.settings.features = everything();
+    p.settings.depth = 4;
+    p.accelerator = AcceleratorKind::none;
+    const Image expected = render_picture(scene, p);
+    p.accelerator = AcceleratorKind::bvh;
+    for_each_isa([&](Isa isa) {
+        EXPECT_EQ(differing_pixels(expected, render_picture(scene, p)), 0u) << kIsaNames[static_cast<std::size_t>(isa)];
+    });
+}
+
 TEST_P(SameBits, OneSeedOnePictureAnotherSeedAnother) {
     Picture p = picture(2);
     p.settings.seed = 1;

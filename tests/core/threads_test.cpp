@@ -1,0 +1,74 @@
+// Loops over the machine's threads: every index once, exceptions out, no more threads than asked for.
+#include "core/threads.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <mutex>
+#include <new>
+#include <numeric>
+#include <set>
+#include <thread>
+#include <vector>
+
+namespace glint {
+namespace {
+
+TEST(ParallelForOn, EveryIndexOnceOnAtMostSoManyThreads) {
+    for (const int threads : {-1, 0, 1, 2, 3, 100}) {
+        const ParallelFor loop = parallel_for_on(threads);
+        for (const std::size_t count : {0u, 1u, 2u, 5000u}) {
+            std::vector<std::atomic<int>> calls(count);
+            std::atomic<int> working{0}, most{0};
+            std::set<std::thread::id> ids;
+            std::mutex mutex;
+            loop(count, [&](std::size_t i) {
+                const int now = ++working;
+                for (int seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {
+                }
+                ++calls[i];
+                {
+                    const std::lock_guard lock(mutex);
+                    ids.insert(std::this_thread::get_id());
+                }
+                --working;
+            });
+            EXPECT_EQ(std::accumulate(calls.begin(), calls.end(), 0, [](int n, const auto& c) { return n + (c == 1); }),
+                      static_cast<int>(count));
+            EXPECT_LE(most, std::max(1, threads));
+            if (threads <= 1 && count > 0) {
+                EXPECT_EQ(ids, std::set{std::this_thread::get_id()});
+            }
+        }
+    }
+}
+
+TEST(ParallelForOn, WhatATaskThrowsReachesTheCallerAndTheLoopGoesOnWorking) {
+    for (const int threads : {1, 2, 8}) {
+        const ParallelFor loop = parallel_for_on(threads);
+        const auto fail = [](std::size_t i) {
+            if (i == 77) throw std::bad_alloc();
+        };
+        EXPECT_THROW(loop(1000, fail), std::bad_alloc);
+        std::atomic<int> calls{0};
+        loop(100, [&](std::size_t) { ++calls; });
+        EXPECT_EQ(calls, 100);
+    }
+}
+
+TEST(ParallelForOn, AStopEndsTheLoopAtTheNextTask) {
+    for (const int threads : {1, 2, 8}) {
+        std::stop_source stop;
+        const ParallelFor loop = parallel_for_on(threads, stop.get_token());
+        std::atomic<int> calls{0};
+        const auto task = [&](std::size_t) {
+            if (++calls == 10) stop.request_stop();
+        };
+        EXPECT_THROW(loop(1000000, task), Abandoned);
+        EXPECT_LT(calls, 10 + 2 * std::max(1, threads));
+        EXPECT_THROW(loop(1, task), Abandoned);
+    }
+}
+
+}  // namespace
+}  // namespace glint
