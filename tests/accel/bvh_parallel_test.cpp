@@ -108,7 +108,7 @@ TEST(BvhParallel, TheCallersLoopIsTheOneThatIsUsed) {
     EXPECT_THROW((void)build_accelerator(AcceleratorKind::bvh, g, stopping), std::runtime_error);
 }
 
-// Minutes in all; see tests/README.md.
+// About a minute each, up to 2.6 GB; see tests/README.md.
 TEST(LongBvh, TenMillionPrimitivesOneSoundTreeAndTheHitsOfBruteForce) {
     const auto g = std::make_shared<const Geometry>(triangles_in_cube(14, 10000000, glm::vec3(0.0f), 1.0f, 0.005f));
     ASSERT_GT(g->triangles.size(), 9990000u);
