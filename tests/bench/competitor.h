@@ -1,4 +1,4 @@
-// One way to trace rays, and where its answers go. Each competitor packs the rays as it needs them, inside the timing.
+// One way to trace rays, and where its answers go.
 // Knows no clock. Invariant: answers of ray i of a set lie in block i / kRayBatch, lane i % kRayBatch, whoever gave them.
 #pragma once
 
@@ -21,9 +21,11 @@ struct Answers {
     [[nodiscard]] bool is_occluded(std::size_t i) const { return occluded[i / kRayBatch][i % kRayBatch]; }
 };
 
-// A block of at most kRayBatch rays, as they lie in memory: one struct a ray.
+// A block of at most kRayBatch rays, as they lie in memory: one struct a ray for those who trace one at a time (and streams),
+// structure of arrays for packets and batches. From there each packs what it needs, inside the timing.
 struct Block {
     std::span<const Ray> rays;
+    const RayBatch& batch;
     HitBatch& hits;
     OccludedBatch& occluded;
 };

@@ -1,5 +1,7 @@
 #include <xmmintrin.h>
 
+#include <cstring>
+
 #include "competitor.h"
 #include "embree_scene.h"
 
@@ -89,15 +91,14 @@ struct alignas(64) Packet {
         std::fill(std::begin(query.hit.instID[0]), std::end(query.hit.instID[0]), RTC_INVALID_GEOMETRY_ID);
         std::fill(std::begin(valid), std::end(valid), -1);
     }
-    void fill(std::span<const Ray> rays) {
+    void fill(const RayBatch& rays, std::size_t at, std::size_t count) {
         RTCRay16& r = query.ray;
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            r.org_x[i] = rays[i].origin.x, r.org_y[i] = rays[i].origin.y, r.org_z[i] = rays[i].origin.z;
-            r.dir_x[i] = rays[i].direction.x, r.dir_y[i] = rays[i].direction.y, r.dir_z[i] = rays[i].direction.z;
-            r.tfar[i] = rays[i].t_max;
-        }
-        if (rays.size() < kLanes) {
-            for (std::size_t i = 0; i < kLanes; ++i) valid[i] = i < rays.size() ? -1 : 0;
+        const auto copy = [at](float* to, const float* from) { std::memcpy(to, from + at, kLanes * sizeof(float)); };
+        copy(r.org_x, rays.origin[0]), copy(r.org_y, rays.origin[1]), copy(r.org_z, rays.origin[2]);
+        copy(r.dir_x, rays.direction[0]), copy(r.dir_y, rays.direction[1]), copy(r.dir_z, rays.direction[2]);
+        copy(r.tfar, rays.t_max);
+        if (count < kLanes) {
+            for (std::size_t i = 0; i < kLanes; ++i) valid[i] = i < count ? -1 : 0;
         }
     }
     void clear_hits() {
@@ -114,7 +115,7 @@ public:
         for (const Block& block : blocks) {
             for (std::size_t at = 0; at < block.rays.size(); at += kLanes) {
                 const std::size_t count = std::min(kLanes, block.rays.size() - at);
-                packet.fill(block.rays.subspan(at, count));
+                packet.fill(block.batch, at, count);
                 packet.clear_hits();
                 rtcIntersect16(packet.valid, scene(), &c, &packet.query);
                 const RTCHit16& hit = packet.query.hit;
@@ -133,7 +134,7 @@ public:
         for (const Block& block : blocks) {
             for (std::size_t at = 0; at < block.rays.size(); at += kLanes) {
                 const std::size_t count = std::min(kLanes, block.rays.size() - at);
-                packet.fill(block.rays.subspan(at, count));
+                packet.fill(block.batch, at, count);
                 rtcOccluded16(packet.valid, scene(), &c, &packet.query.ray);
                 for (std::size_t i = 0; i < count; ++i) block.occluded[at + i] = packet.query.ray.tfar[i] < 0.0f;
             }

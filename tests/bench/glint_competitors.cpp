@@ -31,26 +31,14 @@ public:
     InBatches(std::string name, std::shared_ptr<const Bvh> bvh)
         : Competitor(std::move(name), Role::bvh_batch), bvh_(std::move(bvh)) {}
 
-    void closest(RayOrder order, std::span<Block> blocks) const override {
-        RayBatch batch;
-        for (const Block& block : blocks) {
-            fill(batch, order, block.rays);
-            bvh_->closest_hits(batch, block.hits);
-        }
+    void closest(RayOrder, std::span<Block> blocks) const override {
+        for (const Block& block : blocks) bvh_->closest_hits(block.batch, block.hits);
     }
-    void occluded(RayOrder order, std::span<Block> blocks) const override {
-        RayBatch batch;
-        for (const Block& block : blocks) {
-            fill(batch, order, block.rays);
-            bvh_->occluded(batch, block.occluded);
-        }
+    void occluded(RayOrder, std::span<Block> blocks) const override {
+        for (const Block& block : blocks) bvh_->occluded(block.batch, block.occluded);
     }
 
 private:
-    static void fill(RayBatch& batch, RayOrder order, std::span<const Ray> rays) {
-        batch.clear(order);
-        for (const Ray& ray : rays) batch.push(ray);
-    }
     std::shared_ptr<const Bvh> bvh_;
 };
 
@@ -60,7 +48,7 @@ std::vector<Block> make_blocks(const RaySet& set, Answers& answers, std::size_t 
     std::vector<Block> blocks;
     for (std::size_t b = first; b < last; ++b) {
         const std::size_t begin = b * kRayBatch, count = std::min<std::size_t>(kRayBatch, set.rays.size() - begin);
-        blocks.push_back({std::span(set.rays).subspan(begin, count), answers.hits[b], answers.occluded[b]});
+        blocks.push_back({std::span(set.rays).subspan(begin, count), set.batches[b], answers.hits[b], answers.occluded[b]});
     }
     return blocks;
 }

@@ -156,17 +156,23 @@ std::vector<RaySet> make_ray_sets(const BenchScene& scene, const Bvh& bvh, int t
     const auto from_light = [&](const Visible& v) { return segment(light, v.point); };
     const float reach = kOcclusionReach * scene.diagonal;
     using enum RayOrder;
-    return {
-        {"primary", false, common_origin, std::move(one.rays)},
-        {"primary16", false, common_origin, std::move(many.rays)},
-        {"lens16", false, coherent, camera_rays(scene, {kManySamples, kSamples, 4 * thin, true}).rays},
-        {"shadow", true, common_origin, from_each(seen_once, from_light)},
-        {"shadow16", true, common_origin, from_each(seen, from_light)},
-        {"area16", true, coherent, from_each(seen, [&](const Visible& v) { return to_area_light(scene, v); })},
-        {"reflect", false, coherent, from_each(seen_once, mirrored)},
-        {"diffuse", false, divergent, from_each(seen_once, [](const Visible& v) { return cosine_weighted(v, 4, kInfinity); })},
-        {"ao", true, divergent, from_each(seen_once, [&](const Visible& v) { return cosine_weighted(v, 5, reach); })},
+    std::vector<RaySet> sets{
+        {"primary", false, common_origin, std::move(one.rays), {}},
+        {"primary16", false, common_origin, std::move(many.rays), {}},
+        {"lens16", false, coherent, camera_rays(scene, {kManySamples, kSamples, 4 * thin, true}).rays, {}},
+        {"shadow", true, common_origin, from_each(seen_once, from_light), {}},
+        {"shadow16", true, common_origin, from_each(seen, from_light), {}},
+        {"area16", true, coherent, from_each(seen, [&](const Visible& v) { return to_area_light(scene, v); }), {}},
+        {"reflect", false, coherent, from_each(seen_once, mirrored), {}},
+        {"diffuse",
+         false,
+         divergent,
+         from_each(seen_once, [](const Visible& v) { return cosine_weighted(v, 4, kInfinity); }),
+         {}},
+        {"ao", true, divergent, from_each(seen_once, [&](const Visible& v) { return cosine_weighted(v, 5, reach); }), {}},
     };
+    for (RaySet& set : sets) set.make_batches();
+    return sets;
 }
 
 }  // namespace glint::bench

@@ -16,6 +16,14 @@ struct RaySet {
     bool any = false;  // shadow rays: is there a hit at all?
     RayOrder order = RayOrder::divergent;
     std::vector<Ray> rays;
+    std::vector<RayBatch> batches;  // the same rays, structure of arrays, for those who trace many at once
+
+    void make_batches() {
+        for (std::size_t at = 0; at < rays.size(); at += kRayBatch) {
+            batches.emplace_back().clear(order);
+            batches.back().assign(&rays[at], static_cast<int>(std::min<std::size_t>(kRayBatch, rays.size() - at)));
+        }
+    }
 };
 
 // `thin`: only every thin-th tile of 16x16 pixels is traced; 1 = all.
