@@ -10,9 +10,11 @@
 namespace glint {
 namespace {
 
-std::size_t cells_of(const UniformGrid& grid) {
-    const glm::ivec3 n = grid.resolution();
-    return static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z);
+// Eight cells a primitive in one level: many more steps through many smaller cells than speed asks for.
+constexpr GridDensity kFine{16.0, 16.0, 1000000};
+
+UniformGrid fine_grid(std::shared_ptr<const Geometry> geometry) {
+    return UniformGrid(std::move(geometry), serial_for, isa_in_use(), kFine);
 }
 
 void expect_same(const UniformGrid& grid, const BruteForce& truth, const Ray& ray) {
@@ -25,7 +27,7 @@ TEST(Grid, S_GRD_01_AHitInALaterCellDoesNotEndTheWalk) {
     auto geometry = std::make_shared<Geometry>();
     add_triangle(*geometry, glm::vec3(0.0f, 0.0f, 0.5f), glm::vec3(3.0f, 0.6f, 0.0f), glm::vec3(3.0f, 0.6f, 1.0f));
     geometry->spheres = {{glm::vec3(1.5f, 0.5f, 0.5f), 0.2f}};
-    const UniformGrid grid(geometry);
+    const UniformGrid grid = fine_grid(geometry);
     ASSERT_GE(grid.resolution().x, 3) << "too coarse to test anything";
     const Hit hit = grid.closest_hit({glm::vec3(-1.0f, 0.5f, 0.5f), glm::vec3(1.0f, 0.0f, 0.0f)});
     EXPECT_EQ(hit.primitive, make_id(PrimitiveKind::sphere, 0));
@@ -40,7 +42,7 @@ TEST(Grid, S_GRD_02_RaysAlongFacesEdgesAndCornersOfCells) {
         geometry->spheres.push_back({p, i % 2 == 0 ? 0.5f : 0.2f});
         add_triangle(*geometry, p, p + glm::vec3(1.0f, 0.0f, 0.0f), p + glm::vec3(0.0f, 1.0f, 0.0f));
     }
-    const UniformGrid grid(geometry);
+    const UniformGrid grid = fine_grid(geometry);
     const BruteForce truth(geometry);
     Random random(2);
     const auto coin = [&random] { return random.below(2) == 0; };
@@ -74,7 +76,7 @@ TEST(Grid, S_GRD_02_RaysAlongFacesEdgesAndCornersOfCells) {
 
 TEST(Grid, S_GRD_03_TheEndOfARowOfTenThousandIsReached) {
     const auto geometry = std::make_shared<const Geometry>(scenes::sphere_row());
-    const UniformGrid grid(geometry);
+    const UniformGrid grid = fine_grid(geometry);
     ASSERT_GE(grid.resolution().x, 4000);
     // Down the row just above the spheres, dipping into one far away.
     for (int i = 0; i < 10000; i += 7) {
@@ -89,12 +91,16 @@ TEST(Grid, S_GRD_03_TheEndOfARowOfTenThousandIsReached) {
 
 // Cells and references stay within a small multiple of the primitives, whatever the scene.
 void expect_bounded(const Geometry& geometry, const char* what) {
-    const UniformGrid grid(std::make_shared<const Geometry>(geometry));
     const std::size_t n = geometry.bounded_count();
-    EXPECT_GE(grid.reference_count() + 16, n) << what;  // a few large ones may be kept out of the cells
-    EXPECT_LE(grid.reference_count(), 16 * n + 4096) << what;
-    EXPECT_LE(cells_of(grid), 64 * n + 64) << what;
-    EXPECT_LE(grid.memory_bytes(), 4 * (cells_of(grid) + 1 + grid.reference_count())) << what;
+    for (const GridDensity& density : {GridDensity{}, kFine}) {
+        const UniformGrid grid(std::make_shared<const Geometry>(geometry), serial_for, isa_in_use(), density);
+        EXPECT_GE(8 * grid.reference_count() + 16, n) << what;  // a few large ones may be kept out of the cells
+        EXPECT_LE(grid.reference_count(), 16 * n + 4096) << what;
+        EXPECT_LE(grid.cell_count(), 64 * n + 64) << what;
+        // Blocks hold at most 40 bytes a primitive when full; a level costs less than 64.
+        EXPECT_LE(grid.memory_bytes(), 40 * n + 2048 + 8 * (grid.cell_count() + grid.reference_count()) + 64 * grid.level_count())
+            << what;
+    }
 }
 
 TEST(Grid, S_GRD_05_MemoryIsBoundedByTheNumberOfPrimitives) {
