@@ -9,7 +9,7 @@ namespace glint {
 namespace {
 
 // References to a block in all cells together, per block: beyond it cells stay coarse.
-constexpr double kMostReferencesPerBlock = 16.0;
+constexpr double kMostReferencesPerBlock = 64.0;
 constexpr double kMaxCells = 1.0e8;
 constexpr double kMaxCellsPerAxis = 1 << 14;
 // Costs of a level in steps from cell to cell: to enter it, and to test a block (measured, accel/README.md).
@@ -249,7 +249,7 @@ private:
         // Coarsen until the references fit, by an estimate that counts a block once per primitive.
         GridLevel level{};
         double wanted = density_.inner * primitives, estimate = 0.0;
-        for (int attempt = 0; attempt < 4; ++attempt, wanted *= 0.125) {
+        for (int attempt = 0; attempt < 8; ++attempt, wanted *= 0.5) {
             level = make_level(contents, wanted);
             estimate = count_references(level, blocks, box);
             if (estimate <= allowance * static_cast<double>(blocks.size())) break;

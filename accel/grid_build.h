@@ -11,8 +11,8 @@ namespace glint {
 
 // How fine the cells are.
 struct GridDensity {
-    double outer = 0.5;       // cells a primitive in the outermost level
-    double inner = 1.0;       // the same in levels within a cell
+    double outer = 0.125;     // cells a primitive in the outermost level
+    double inner = 0.5;       // the same in levels within a cell
     std::size_t crowded = 4;  // blocks from which on a cell may get a level of its own
 };
 

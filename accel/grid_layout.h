@@ -21,7 +21,7 @@ struct GridLevel {
 };
 
 // Levels within levels, the outermost included.
-constexpr int kMaxGridDepth = 4;
+constexpr int kMaxGridDepth = 6;
 
 struct GridView {
     BvhView blocks;

@@ -10,7 +10,7 @@
 namespace glint::GLINT_ISA {
 
 // How far from its primitive's bounds a hit is looked for, in units of origin and geometry: twice the padding of every test.
-constexpr double kReach = 2.0 * static_cast<double>(kPadding);
+constexpr double kReach = 1.5 * static_cast<double>(kPadding);
 
 inline double least(double a, double b) noexcept { return a < b ? a : b; }
 inline double most(double a, double b) noexcept { return a > b ? a : b; }

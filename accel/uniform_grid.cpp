@@ -13,7 +13,7 @@ constexpr double kBlocksInFittingGrid = 6.0;
 // A ray from within this many times the geometry's largest coordinate is walked cell by cell, if that pads primitives by no
 // more than kPaddingOfSize of the median size; from the least of them always.
 constexpr double kLeastNear = 1.0, kMostNear = 32.0, kPaddingOfSize = 0.1;
-constexpr double kReach = 2.0 * static_cast<double>(kPadding);
+constexpr double kReach = 1.5 * static_cast<double>(kPadding);
 
 double diagonal2(const Aabb& box) {
     const glm::dvec3 d = glm::dvec3(box.hi) - glm::dvec3(box.lo);
