@@ -8,8 +8,8 @@
 namespace glint {
 namespace {
 
-// References to a block in all cells together, per block: beyond it cells stay coarse.
-constexpr double kMostReferencesPerBlock = 64.0;
+// References in all cells together: beyond the first the outermost level gets coarser, beyond the second cells get no levels.
+constexpr double kMostReferencesPerPrimitive = 16.0, kMostReferencesPerBlock = 64.0;
 constexpr double kMaxCells = 1.0e8;
 constexpr double kMaxCellsPerAxis = 1 << 14;
 // Costs of a level in steps from cell to cell: to enter it, and to test a block (measured, accel/README.md).
@@ -89,8 +89,7 @@ public:
         GridLevel top = make_level(all, cells);
         std::vector<std::uint32_t> every(blocks_.refs.size() - blocks_.large);
         std::iota(every.begin(), every.end(), static_cast<std::uint32_t>(blocks_.large));
-        while (count_references(top, every, all) > kMostReferencesPerBlock * static_cast<double>(blocks_.refs.size()) + 64.0 &&
-               cell_count(top) > 1) {
+        while (count_references(top, every, all) * kBvhWidth > kMostReferencesPerPrimitive * n + 64.0 && cell_count(top) > 1) {
             top = make_level(all, cells *= 0.5);
         }
         std::vector<Planes> planes;
@@ -220,11 +219,14 @@ private:
     [[nodiscard]] GridCell finish_cell(const std::vector<std::uint32_t>& blocks, const Box& box, int depth, double allowance,
                                        Part& part) const {
         if (blocks.empty()) return 0;
-        part.references += blocks.size();
-        if (blocks.size() == 1) return blocks_.refs[blocks.front()];
+        if (blocks.size() == 1) {
+            part.references += 1;
+            return blocks_.refs[blocks.front()];
+        }
         if (blocks.size() >= density_.crowded && depth < kMaxGridDepth && allowance >= 1.5) {
             if (const GridCell level = refine(blocks, box, depth, allowance, part); level != 0) return level;
         }
+        part.references += blocks.size();
         const std::size_t first = part.lists.size();
         for (const std::uint32_t b : blocks) part.lists.push_back(blocks_.refs[b]);
         part.lists.back() |= kLastOfList;

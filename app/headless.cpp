@@ -218,8 +218,13 @@ int run_info(const Options& o) {
         if (features_of(*scene).has(static_cast<Feature>(i))) features += fmt::format(" {}", kFeatureNames[i]);
     }
     fmt::print("features{}\n", features);
-    const AcceleratorKind kind = automatic_accelerator(*scene);
-    fmt::print("accelerator {} ({} bounded primitives)\n", kAcceleratorNames[static_cast<std::size_t>(kind)], g.bounded_count());
+    // What `render` takes without further options.
+    const RayDemand demand = expected_rays(*scene, scene->width, scene->height, scene->spp > 0 ? scene->spp : 64);
+    const auto seconds = estimated_seconds(g, demand);
+    const AcceleratorKind kind = automatic_accelerator(*scene, demand);
+    fmt::print("accelerator {} ({} bounded primitives, {:.2g} rays: none {:.2g} s, grid {:.2g} s, bvh {:.2g} s)\n",
+               kAcceleratorNames[static_cast<std::size_t>(kind)], g.bounded_count(), demand.rays, seconds[0], seconds[1],
+               seconds[2]);
     fmt::print("isa {} ({})\n", name_of(isa_in_use()), o.isa ? "as asked for" : "the best that this machine supports");
     for (const std::string& w : scene->warnings) fmt::print("warning {}\n", w);
     return 0;

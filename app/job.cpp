@@ -98,7 +98,7 @@ Job prepare_job(const Options& o, const std::string& scene) {
 
     const auto named = o.accelerator_given ? o.accelerator : accelerator_named(s.accelerator);
     job.accelerator_is_auto = !named.has_value();
-    job.accelerator = named.value_or(automatic_accelerator(s));
+    job.accelerator = named.value_or(automatic_accelerator(s, expected_rays(s, job.width, job.height, job.spp)));
     return job;
 }
 

@@ -1,6 +1,8 @@
 #include "core/accelerator_cache.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <new>
 #include <stdexcept>
 #include <system_error>
@@ -13,14 +15,43 @@
 namespace glint {
 namespace {
 
-// Up to here a loop needs no build and is no slower than a tree: the paper's dof (9 primitives) takes 0.125 s without and
-// 0.143 s with one, balls_low (12) 0.190 and 0.197 s. A cost model may refine it.
-constexpr std::size_t kFewPrimitives = 8;
+// Nanoseconds, from kernels and renders of the built-in and the paper's scenes on Zen 4; only their ratios matter here.
+struct Costs {
+    double build, build_primitive;  // once, and for each primitive
+    double ray, ray_doubling;       // for each ray, and for each doubling of the blocks of eight
+};
+constexpr Costs kGrid{6.0e4, 1700.0, 60.0, 20.0};
+constexpr Costs kBvh{3.0e4, 500.0, 30.0, 10.0};
+// Of the loop: a query, and a test by kind of primitive (triangle, sphere, box, cone).
+constexpr double kLoopQuery = 20.0;
+constexpr std::array<double, 4> kLoopTest{30.0, 13.0, 20.0, 40.0};
+
+double seconds(const Costs& c, double primitives, double rays) {
+    const double build = c.build + c.build_primitive * primitives;
+    return 1.0e-9 * (build + rays * (c.ray + c.ray_doubling * std::log2(1.0 + primitives / 8.0)));
+}
 
 }  // namespace
 
-AcceleratorKind automatic_accelerator(const Scene& scene) {
-    return scene.geometry->bounded_count() <= kFewPrimitives ? AcceleratorKind::none : AcceleratorKind::bvh;
+RayDemand expected_rays(const Scene& scene, int width, int height, int samples_per_pixel) {
+    bool branches = false;
+    for (const Material& m : scene.materials) branches = branches || m.glass || m.has_mirror();
+    const double a_sample = (branches ? 2.0 : 1.0) * (1.0 + static_cast<double>(scene.lights.size()));
+    return {static_cast<double>(width) * height * samples_per_pixel * a_sample};
+}
+
+std::array<double, kAcceleratorNames.size()> estimated_seconds(const Geometry& geometry, const RayDemand& demand) {
+    const auto primitives = static_cast<double>(geometry.bounded_count());
+    double loop = kLoopQuery;
+    for (std::size_t kind = 0; kind < kLoopTest.size(); ++kind) {
+        loop += kLoopTest[kind] * static_cast<double>(geometry.count(static_cast<PrimitiveKind>(kind)));
+    }
+    return {1.0e-9 * demand.rays * loop, seconds(kGrid, primitives, demand.rays), seconds(kBvh, primitives, demand.rays)};
+}
+
+AcceleratorKind automatic_accelerator(const Scene& scene, const RayDemand& demand) {
+    const auto estimate = estimated_seconds(*scene.geometry, demand);
+    return static_cast<AcceleratorKind>(std::min_element(estimate.begin(), estimate.end()) - estimate.begin());
 }
 
 AcceleratorCache::AcceleratorCache(std::shared_ptr<const Scene> scene, int threads, BuildPriority priority)

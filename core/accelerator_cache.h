@@ -14,8 +14,18 @@
 
 namespace glint {
 
-// The accelerator `auto` means for this scene: none for a handful of primitives, else the BVH.
-[[nodiscard]] AcceleratorKind automatic_accelerator(const Scene& scene);
+// What a picture asks of an accelerator: rays of all kinds.
+struct RayDemand {
+    double rays = 1.0e6;
+};
+// Samples times what a sample asks for: its camera ray, then a shadow ray to each light; mirrors and glass double it.
+[[nodiscard]] RayDemand expected_rays(const Scene& scene, int width, int height, int samples_per_pixel);
+
+// Seconds of one thread for building and asking, by kind, from counts of primitives; constants measured (core/README.md).
+[[nodiscard]] std::array<double, kAcceleratorNames.size()> estimated_seconds(const Geometry& geometry, const RayDemand& demand);
+
+// The accelerator `auto` means: the one of the least estimate.
+[[nodiscard]] AcceleratorKind automatic_accelerator(const Scene& scene, const RayDemand& demand = {});
 
 // Who else wants the cores while something is built.
 enum class BuildPriority { normal, background };

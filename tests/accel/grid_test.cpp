@@ -1,5 +1,8 @@
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -172,6 +175,91 @@ TEST(Grid, S_GRD_08_RaysFromBeyondThePaddingAnswerLikeBruteForce) {
             ASSERT_NO_FATAL_FAILURE(expect_same(grid, truth, {origin, target - origin}));
         }
     }
+}
+
+// Cameras and lamps at 10^2 to 10^5 sizes, aimed at and past the contents, towards them and back: no ray of theirs may meet
+// less than brute force, however its rounding error compares with the cells.
+TEST(Grid, RaysFromFarLightsAndCamerasAnswerLikeBruteForce) {
+    for (const Geometry& g : {scenes::triangle_soup(), scenes::sphereflake(), scenes::stadium(), scenes::mixed()}) {
+        const auto geometry = std::make_shared<const Geometry>(g);
+        const Aabb box = geometry->bounds();
+        Random random(10);
+        for (const GridDensity& density : {GridDensity{}, kFine}) {
+            const UniformGrid grid(geometry, serial_for, isa_in_use(), density);
+            const BruteForce truth(geometry);
+            std::size_t hits = 0;
+            for (int i = 0; i < 1500; ++i) {
+                const glm::vec3 target = box.lo + random.in_cube(0.0f, 1.0f) * box.size();
+                const glm::vec3 origin = target + box.magnitude() * random.power_of_ten(1.0f, 5.3f) * random.direction();
+                Ray ray{origin, target - origin};
+                if (i % 3 == 1) ray.t_max = random.uniform(0.9f, 1.1f);
+                if (i % 3 == 2) ray.direction[i / 3 % 3] = 0.0f;
+                ASSERT_NO_FATAL_FAILURE(expect_same(grid, truth, ray));
+                hits += truth.closest_hit(ray).found() ? 1 : 0;
+            }
+            EXPECT_GT(hits, 100u);
+        }
+    }
+}
+
+// From 100 sizes a ray must not ask a large part of the scene, as brute force would.
+TEST(Grid, ARayFromFarAwayTestsFewBlocks) {
+    const auto geometry = std::make_shared<const Geometry>(scenes::closed_ball());
+    const UniformGrid grid(geometry);
+    RayBatch batch;
+    batch.clear(RayOrder::divergent);
+    Random random(11);
+    const Aabb box = geometry->bounds();
+    while (batch.count < kRayBatch) {
+        const glm::vec3 origin = 100.0f * box.magnitude() * random.direction();
+        batch.push({origin, box.lo + random.in_cube(0.0f, 1.0f) * box.size() - origin});
+    }
+    ASSERT_GT(100.0f * box.magnitude() * 0.5f, grid.near_origin());
+    const TraversalCounts counts = grid.count_traversal(batch);
+    EXPECT_EQ(counts.rays, static_cast<std::size_t>(kRayBatch));
+    EXPECT_LT(counts.leaves, counts.rays * geometry->bounded_count() / 8 / 5);
+}
+
+// S-GRD-06: what was tested is remembered by the ray alone, and only to save tests: one block in many cells is tested once.
+TEST(Grid, S_GRD_06_ABlockInManyCellsIsTestedOnce) {
+    Geometry g;
+    for (int i = 0; i < 8; ++i) {
+        const float y = 0.01f * static_cast<float>(i);
+        add_triangle(g, glm::vec3(0.0f, y, 0.0f), glm::vec3(10.0f, y, 0.1f), glm::vec3(10.0f, y + 0.005f, 0.0f));
+    }
+    const UniformGrid grid(std::make_shared<const Geometry>(g), serial_for, isa_in_use(), {64.0, 64.0, 1000000});
+    RayBatch batch;
+    batch.clear(RayOrder::divergent);
+    batch.push({glm::vec3(-1.0f, 0.042f, 0.05f), glm::vec3(1.0f, 0.0f, 0.0f)});
+    const TraversalCounts counts = grid.count_traversal(batch);
+    EXPECT_GT(counts.nodes, 10u);
+    EXPECT_LE(counts.leaves, 2u);
+}
+
+TEST(Grid, TheCellsAreTheSameHoweverTheyAreBuilt) {
+    const auto geometry = std::make_shared<const Geometry>(triangles_in_cube(12, 40000, glm::vec3(0.0f), 1.0f, 0.02f));
+    const ParallelFor backwards = [](std::size_t count, const std::function<void(std::size_t)>& task) {
+        std::vector<std::jthread> threads;
+        for (std::size_t t = 0; t < 3; ++t) {
+            threads.emplace_back([=, &task] {
+                for (std::size_t i = count; i-- > 0;) {
+                    if (i % 3 == t) task(i);
+                }
+            });
+        }
+    };
+    const UniformGrid a(geometry), b(geometry, backwards);
+    EXPECT_EQ(a.reference_count(), b.reference_count());
+    EXPECT_EQ(a.cell_count(), b.cell_count());
+    EXPECT_EQ(a.level_count(), b.level_count());
+    RayBatch batch;
+    batch.clear(RayOrder::divergent);
+    Random random(13);
+    while (batch.count < kRayBatch) batch.push({2.0f * random.direction(), random.direction()});
+    const TraversalCounts ca = a.count_traversal(batch), cb = b.count_traversal(batch);
+    EXPECT_EQ(ca.nodes, cb.nodes);
+    EXPECT_EQ(ca.leaves, cb.leaves);
+    for (int i = 0; i < kRayBatch; ++i) ASSERT_TRUE(same(a.closest_hit(batch[i]), b.closest_hit(batch[i])));
 }
 
 }  // namespace

@@ -22,9 +22,11 @@ namespace {
 class Comparison {
 public:
     explicit Comparison(const AdversarialScene& scene)
-        : geometry_(std::make_shared<const Geometry>(scene.build())), brute_force_(geometry_), grid_(geometry_) {
+        : geometry_(std::make_shared<const Geometry>(scene.build())), brute_force_(geometry_) {
         for (const Isa isa : {Isa::baseline, Isa::avx2, Isa::avx512}) {
-            if (supported(isa)) trees_.emplace_back(geometry_, serial_for, isa);
+            if (!supported(isa)) continue;
+            trees_.emplace_back(geometry_, serial_for, isa);
+            grids_.emplace_back(geometry_, serial_for, isa);
         }
     }
 
@@ -38,8 +40,10 @@ public:
             check(!h.found() || (h.t > 0.0f && h.t <= ray.t_max && h.t < kInfinity), ray, h, h, "range of t");
         }
         rays_ += rays.size();
-        compare_with(grid_, "grid", rays);
-        for (std::size_t i = 0; i < trees_.size(); ++i) compare_with(trees_[i], kIsaNames[i], rays);
+        for (std::size_t i = 0; i < trees_.size(); ++i) {
+            compare_with(trees_[i], kIsaNames[i], rays);
+            compare_with(grids_[i], "grid " + std::string(kIsaNames[i]), rays);
+        }
     }
 
     [[nodiscard]] const Geometry& geometry() const { return *geometry_; }
@@ -80,8 +84,8 @@ private:
 
     std::shared_ptr<const Geometry> geometry_;
     BruteForce brute_force_;
-    UniformGrid grid_;
     std::deque<Bvh> trees_;
+    std::deque<UniformGrid> grids_;
     std::vector<Hit> truth_;
     RayBatch batch_;
     HitBatch hit_batch_;

@@ -31,9 +31,25 @@ TEST(AcceleratorCache, RequestingDoesNotWaitAndLeavingDoesNotLoseTheBuild) {
     const AcceleratorCache abandoned(scene);
 }
 
-TEST(AcceleratorCache, AutomaticTakesALoopForAHandfulAndATreeOtherwise) {
-    EXPECT_EQ(automatic_accelerator(*load_scene("builtin:balls,level=0")), AcceleratorKind::none);
+TEST(AcceleratorCache, AutomaticTakesALoopWhereATreeHasNothingToSave) {
+    Scene planes;
+    planes.geometry = std::make_shared<const Geometry>();
+    EXPECT_EQ(automatic_accelerator(planes), AcceleratorKind::none);
     EXPECT_EQ(automatic_accelerator(*load_scene("builtin:balls,level=2")), AcceleratorKind::bvh);
+    // A tree for a handful of rays costs more than it saves.
+    EXPECT_EQ(automatic_accelerator(*load_scene("builtin:balls,level=4"), {10.0}), AcceleratorKind::none);
+}
+
+TEST(AcceleratorCache, EstimatesGrowWithRaysAndPrimitives) {
+    const auto few = load_scene("builtin:balls,level=2"), many = load_scene("builtin:balls,level=4");
+    const auto base = estimated_seconds(*few->geometry, {1.0e5});
+    const auto more_rays = estimated_seconds(*few->geometry, {2.0e5}), more = estimated_seconds(*many->geometry, {1.0e5});
+    for (std::size_t i = 0; i < base.size(); ++i) {
+        EXPECT_GT(base[i], 0.0);
+        EXPECT_GT(more_rays[i], base[i]);
+        EXPECT_GT(more[i], base[i]);
+    }
+    EXPECT_EQ(expected_rays(*few, 200, 100, 8).rays, 2.0 * expected_rays(*few, 100, 100, 8).rays);
 }
 
 }  // namespace
