@@ -1,31 +1,19 @@
 #include "accel/grid_build.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
+
+#include "accel/grid_level.h"
 
 namespace glint {
 namespace {
 
 // References in all cells together: beyond the first the outermost level gets coarser, beyond the second cells get no levels.
 constexpr double kMostReferencesPerPrimitive = 16.0, kMostReferencesPerBlock = 64.0;
-constexpr double kMaxCells = 1.0e8;
-constexpr double kMaxCellsPerAxis = 1 << 14;
 // Costs of a level in steps from cell to cell: to enter it, and to test a block (measured, accel/README.md).
 constexpr double kEnterCost = 4.0, kBlockCost = 4.0;
 // Slices of the outermost level, each filled by one task.
 constexpr int kTasks = 64;
-
-struct Box {
-    glm::dvec3 lo{static_cast<double>(kInfinity)}, hi{-static_cast<double>(kInfinity)};
-
-    void grow(const Box& b) { lo = glm::min(lo, b.lo), hi = glm::max(hi, b.hi); }
-    [[nodiscard]] glm::dvec3 size() const { return hi - lo; }
-    [[nodiscard]] bool touches(const Box& b) const {
-        return glm::all(glm::lessThanEqual(lo, b.hi)) && glm::all(glm::lessThanEqual(b.lo, hi));
-    }
-};
 
 double half_area(glm::dvec3 s) { return s.x * s.y + s.y * s.z + s.z * s.x; }
 
@@ -37,52 +25,13 @@ struct Part {
     std::size_t references = 0;
 };
 
-struct CellRange {
-    glm::ivec3 first, last;
-};
-
-// Cells of a level that a box touches.
-CellRange range_of(const GridLevel& level, const Box& box) {
-    CellRange r;
-    for (int i = 0; i < 3; ++i) {
-        // Truncation serves as floor, since what lies below counts to the first cell.
-        const auto at = [&](double x) {
-            const double cell = (x - static_cast<double>(level.lo[i])) * static_cast<double>(level.inverse[i]);
-            return static_cast<int>(std::min(std::max(cell, 0.0), level.n[i] - 1.0));
-        };
-        r.first[i] = at(box.lo[i]);
-        r.last[i] = at(box.hi[i]);
-    }
-    return r;
-}
-
-// A level over `box` of about `cells` cells, as cubic as whole numbers allow.
-GridLevel make_level(const Box& box, double cells) {
-    GridLevel level{};
-    const glm::dvec3 size = box.size();
-    // No side below a thousandth of the widest, so that flat contents have a volume.
-    const glm::dvec3 sides = glm::max(size, glm::dvec3(std::max(size.x, std::max(size.y, size.z)) * 0x1p-10));
-    const double per_length = std::cbrt(std::min(cells, kMaxCells) / (sides.x * sides.y * sides.z));
-    for (int i = 0; i < 3; ++i) {
-        level.lo[i] = std::nextafter(static_cast<float>(box.lo[i]), -kInfinity);
-        level.n[i] = static_cast<std::uint16_t>(std::clamp(std::round(size[i] * per_length), 1.0, kMaxCellsPerAxis));
-        const double side = (box.hi[i] - static_cast<double>(level.lo[i])) / level.n[i];
-        // A point at the origin has no size at all, and its reciprocal must be a number.
-        level.size[i] = std::max(std::nextafter(static_cast<float>(side), kInfinity), std::numeric_limits<float>::min());
-        level.inverse[i] = 1.0f / level.size[i];
-    }
-    return level;
-}
-
-std::size_t cell_count(const GridLevel& l) { return std::size_t{l.n[0]} * l.n[1] * l.n[2]; }
-
 class Builder {
 public:
     Builder(const GridBlocks& blocks, const std::vector<BoundedPrimitive>& primitives, double padding, const GridDensity& density)
         : blocks_(blocks), primitives_(primitives), padding_(padding), density_(density) {}
 
     GridCells build(const ParallelFor& parallel_for) {
-        Box all;
+        DoubleBox all;
         for (std::size_t i = blocks_.first[blocks_.large]; i < primitives_.size(); ++i) all.grow(grown(i));
         const auto n = static_cast<double>(primitives_.size() - blocks_.first[blocks_.large]);
         double cells = density_.outer * n;
@@ -112,7 +61,7 @@ public:
     }
 
 private:
-    [[nodiscard]] Box grown(std::size_t primitive) const {
+    [[nodiscard]] DoubleBox grown(std::size_t primitive) const {
         const Aabb& b = primitives_[primitive].bounds;
         return {glm::dvec3(b.lo) - padding_, glm::dvec3(b.hi) + padding_};
     }
@@ -121,18 +70,18 @@ private:
         int first, last;
     };
     [[nodiscard]] Planes planes_of(const GridLevel& level, std::uint32_t block) const {
-        Box box;
+        DoubleBox box;
         for (std::size_t i = blocks_.first[block]; i < blocks_.first[block + 1]; ++i) box.grow(grown(i));
         const CellRange r = range_of(level, box);
         return {r.first.z, r.last.z};
     }
     // An estimate that counts a block once per primitive of a full block.
     [[nodiscard]] double count_references(const GridLevel& level, const std::vector<std::uint32_t>& blocks,
-                                          const Box& box) const {
+                                          const DoubleBox& box) const {
         double total = 0.0;
         for (const std::uint32_t b : blocks) {
             for (std::size_t i = blocks_.first[b]; i < blocks_.first[b + 1]; ++i) {
-                const Box bounds = grown(i);
+                const DoubleBox bounds = grown(i);
                 if (!bounds.touches(box)) continue;
                 const CellRange r = range_of(level, bounds);
                 const glm::dvec3 n(r.last - r.first + 1);
@@ -144,11 +93,11 @@ private:
     // Calls visit(cell, block) for each block of `blocks` and each cell of planes z0..z1-1 that one of its primitives within
     // `box` touches; a pair may come more than once, but all of a block's come together.
     template <class Visit>
-    void for_each_pair(const GridLevel& level, int z0, int z1, const Box& box, const std::vector<std::uint32_t>& blocks,
+    void for_each_pair(const GridLevel& level, int z0, int z1, const DoubleBox& box, const std::vector<std::uint32_t>& blocks,
                        const Visit& visit) const {
         for (const std::uint32_t b : blocks) {
             for (std::size_t i = blocks_.first[b]; i < blocks_.first[b + 1]; ++i) {
-                const Box bounds = grown(i);
+                const DoubleBox bounds = grown(i);
                 if (!bounds.touches(box)) continue;
                 const CellRange r = range_of(level, bounds);
                 for (int z = std::max(r.first.z, z0); z <= std::min(r.last.z, z1 - 1); ++z) {
@@ -166,7 +115,7 @@ private:
     struct Lists {
         std::vector<std::uint32_t> offsets, blocks;
     };
-    [[nodiscard]] Lists list_blocks(const GridLevel& level, int z0, int z1, const Box& box,
+    [[nodiscard]] Lists list_blocks(const GridLevel& level, int z0, int z1, const DoubleBox& box,
                                     const std::vector<std::uint32_t>& blocks) const {
         const std::size_t cells = static_cast<std::size_t>(z1 - z0) * level.n[0] * level.n[1];
         Lists lists;
@@ -186,8 +135,8 @@ private:
     }
 
     // Writes cells of planes z0..z1-1 from `out` on, levels within them included.
-    void fill_cells(const GridLevel& level, int z0, int z1, const Box& box, const std::vector<std::uint32_t>& blocks, int depth,
-                    double allowance, Part& part, GridCell* out) const {
+    void fill_cells(const GridLevel& level, int z0, int z1, const DoubleBox& box, const std::vector<std::uint32_t>& blocks,
+                    int depth, double allowance, Part& part, GridCell* out) const {
         const Lists lists = list_blocks(level, z0, z1, box, blocks);
         finish_cells(
             level, z0, z1, lists, depth,
@@ -208,16 +157,8 @@ private:
             }
         }
     }
-    [[nodiscard]] static Box box_of(const GridLevel& level, glm::ivec3 cell) {
-        Box box;
-        for (int i = 0; i < 3; ++i) {
-            box.lo[i] = static_cast<double>(level.lo[i]) + cell[i] * static_cast<double>(level.size[i]);
-            box.hi[i] = static_cast<double>(level.lo[i]) + (cell[i] + 1) * static_cast<double>(level.size[i]);
-        }
-        return box;
-    }
-    [[nodiscard]] GridCell finish_cell(const std::vector<std::uint32_t>& blocks, const Box& box, int depth, double allowance,
-                                       Part& part) const {
+    [[nodiscard]] GridCell finish_cell(const std::vector<std::uint32_t>& blocks, const DoubleBox& box, int depth,
+                                       double allowance, Part& part) const {
         if (blocks.empty()) return 0;
         if (blocks.size() == 1) {
             part.references += 1;
@@ -233,13 +174,13 @@ private:
         return kListBit | static_cast<GridCell>(first);
     }
     // A level for the cell `box` if a ray through it is better off with one, else 0.
-    [[nodiscard]] GridCell refine(const std::vector<std::uint32_t>& blocks, const Box& box, int depth, double allowance,
+    [[nodiscard]] GridCell refine(const std::vector<std::uint32_t>& blocks, const DoubleBox& box, int depth, double allowance,
                                   Part& part) const {
-        Box contents;
+        DoubleBox contents;
         double primitives = 0.0;
         for (const std::uint32_t b : blocks) {
             for (std::size_t i = blocks_.first[b]; i < blocks_.first[b + 1]; ++i) {
-                const Box bounds = grown(i);
+                const DoubleBox bounds = grown(i);
                 if (!bounds.touches(box)) continue;
                 contents.grow(bounds);
                 primitives += 1.0;
