@@ -32,9 +32,9 @@ BvhView BvhTree::view(const Geometry& geometry) const {
     return view;
 }
 
-Bvh::Bvh(std::shared_ptr<const Geometry> geometry, const ParallelFor& parallel_for, Isa isa)
+Bvh::Bvh(std::shared_ptr<const Geometry> geometry, const ParallelFor& parallel_for, Isa isa, BuildQuality quality)
     : geometry_(std::move(geometry)),
-      tree_(build_bvh(*geometry_, parallel_for)),
+      tree_(build_bvh(*geometry_, parallel_for, quality)),
       view_(tree_.view(*geometry_)),
       has_planes_(!geometry_->planes.empty()),
       kernels_(&bvh_kernels(isa)) {}
@@ -72,7 +72,7 @@ void Bvh::occluded(const RayBatch& rays, OccludedBatch& result) const noexcept {
     if (view_.units != nullptr) kernels_->occluded_batch(view_, rays, result.data());
 }
 
-std::size_t Bvh::memory_bytes() const { return tree_.units.capacity() * sizeof(BvhTree::Unit); }
+std::size_t Bvh::memory_bytes() const { return tree_.units.size() * sizeof(BvhTree::Unit); }
 
 TraversalCounts Bvh::count_traversal(const RayBatch& rays) const noexcept {
     TraversalCounts counts;

@@ -9,45 +9,77 @@
 namespace glint {
 namespace {
 
-constexpr int kMaxBins = 32;
-// Sets larger than this are binned in parallel, in chunks of this size.
-constexpr std::uint32_t kChunk = 1u << 16;
+constexpr std::size_t kMaxBins = 32;
 
+// One bin of each axis; counts apart, so that a box is two aligned registers.
+// Left uninitialised, for few bins are used where there are few primitives.
+struct RawBox {
+    __m128 lo, hi;
+    void grow(__m128 p_lo, __m128 p_hi) {
+        lo = _mm_min_ps(lo, p_lo);
+        hi = _mm_max_ps(hi, p_hi);
+    }
+};
 struct Bins {
-    // By axis and bin; count apart, so that a box is two aligned registers.
-    std::array<std::array<Box4, kMaxBins>, 3> boxes;
-    std::array<std::array<std::uint32_t, kMaxBins>, 3> counts;
+    std::array<std::array<RawBox, 3>, kMaxBins> boxes;
+    alignas(16) std::array<std::array<std::uint32_t, 4>, kMaxBins> counts;
 
     void clear(int bins) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            std::fill_n(boxes[axis].begin(), bins, Box4());
-            std::fill_n(counts[axis].begin(), bins, 0u);
-        }
+        const RawBox empty{_mm_set1_ps(kInfinity), _mm_set1_ps(-kInfinity)};
+        std::fill_n(boxes.begin(), bins, std::array<RawBox, 3>{empty, empty, empty});
+        std::fill_n(counts.begin(), bins, std::array<std::uint32_t, 4>());
     }
+    template <bool kWeighted>
     void count(std::span<const BuildRef> refs, const Binning& binning) {
         for (const BuildRef& r : refs) {
             const __m128 lo = r.low(), hi = r.high();
             alignas(16) std::array<std::uint32_t, 4> bin;
             _mm_store_si128(reinterpret_cast<__m128i*>(bin.data()), binning(_mm_add_ps(lo, hi)));
+            const std::uint32_t weight = kWeighted ? static_cast<std::uint32_t>(r.weight) : 1u;
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                boxes[axis][bin[axis]].grow(lo, hi);
-                ++counts[axis][bin[axis]];
+                boxes[bin[axis]][axis].grow(lo, hi);
+                counts[bin[axis]][axis] += weight;
             }
         }
     }
     void add(const Bins& other, int bins) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            for (std::size_t i = 0; i < static_cast<std::size_t>(bins); ++i) {
-                boxes[axis][i].grow(other.boxes[axis][i]);
-                counts[axis][i] += other.counts[axis][i];
+        for (std::size_t i = 0; i < static_cast<std::size_t>(bins); ++i) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                boxes[i][axis].grow(other.boxes[i][axis].lo, other.boxes[i][axis].hi);
+                counts[i][axis] += other.counts[i][axis];
             }
         }
     }
 };
 
-std::span<const BuildRef> members(std::span<const BuildRef> refs, const BuildRange& range) {
-    return refs.subspan(range.first, range.count);
-}
+__m128 select(__m128 mask, __m128 yes, __m128 no) { return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no)); }
+
+// What grows along a sweep, for the three axes at once.
+struct Side {
+    std::array<Box4, 3> box;
+    __m128i count = _mm_setzero_si128();
+
+    void grow(const Bins& bins, std::size_t i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) box[axis].grow(bins.boxes[i][axis].lo, bins.boxes[i][axis].hi);
+        count = _mm_add_epi32(count, _mm_load_si128(reinterpret_cast<const __m128i*>(bins.counts[i].data())));
+    }
+    // leaf_cost() times half the area, infinite for an empty side.
+    [[nodiscard]] __m128 cost(bool small) const {
+        __m128 x = _mm_sub_ps(box[0].hi, box[0].lo), y = _mm_sub_ps(box[1].hi, box[1].lo);
+        __m128 z = _mm_sub_ps(box[2].hi, box[2].lo), none = _mm_setzero_ps();
+        _MM_TRANSPOSE4_PS(x, y, z, none);
+        const __m128 area = _mm_add_ps(_mm_add_ps(_mm_mul_ps(x, y), _mm_mul_ps(y, z)), _mm_mul_ps(z, x));
+        const __m128 n = _mm_cvtepi32_ps(count);
+        __m128 leaf = _mm_mul_ps(n, _mm_set1_ps(1.0f / kBvhWidth));
+        if (small) {
+            const __m128 blocks = _mm_cvtepi32_ps(_mm_srli_epi32(_mm_add_epi32(count, _mm_set1_epi32(kBvhWidth - 1)), 3));
+            const __m128 one = _mm_add_ps(_mm_set1_ps(0.5f), _mm_mul_ps(_mm_set1_ps(0.5f), leaf));
+            leaf = select(_mm_cmple_ps(leaf, _mm_set1_ps(1.0f)), one, blocks);
+        }
+        const __m128 empty = _mm_castsi128_ps(_mm_cmpeq_epi32(count, _mm_setzero_si128()));
+        return select(empty, _mm_set1_ps(kInfinity), _mm_mul_ps(leaf, area));
+    }
+};
 
 }  // namespace
 
@@ -60,121 +92,79 @@ Binning::Binning(const BuildRange& range) : lo(range.centers.lo) {
     scale = _mm_and_ps(s, _mm_cmplt_ps(s, _mm_set1_ps(kInfinity)));
 }
 
-inline __m128i Binning::operator()(__m128 center2) const { return _mm_cvttps_epi32(_mm_mul_ps(_mm_sub_ps(center2, lo), scale)); }
-
 float leaf_cost(std::uint32_t count, bool small) {
     const float n = static_cast<float>(count);
     if (!small) return n / kBvhWidth;
-    return count <= kBvhWidth ? 0.5f + 0.5f * n / kBvhWidth : std::ceil(n / kBvhWidth);
+    return count <= kBvhWidth ? 0.5f + 0.5f * n / kBvhWidth : static_cast<float>((count + kBvhWidth - 1) / kBvhWidth);
 }
 
-Split best_split(std::span<const BuildRef> refs, const BuildRange& range, const ParallelFor& parallel_for) {
+Split best_split(std::span<const BuildRef> refs, const BuildRange& range, std::uint32_t primitives,
+                 const ParallelFor& parallel_for) {
     const Binning binning(range);
     const auto bins = static_cast<std::size_t>(binning.bins);
+    const auto count = [&](std::span<const BuildRef> some, Bins& into) {
+        into.clear(binning.bins);
+        primitives == range.count ? into.count<false>(some, binning) : into.count<true>(some, binning);
+    };
     Bins all;
-    all.clear(binning.bins);
-    if (range.count <= 2 * kChunk) {
-        all.count(members(refs, range), binning);
+    if (!in_chunks(range)) {
+        count(refs.subspan(range.first, range.count), all);
     } else {
-        const std::size_t chunks = (range.count + kChunk - 1) / kChunk;
-        std::vector<Bins> part(chunks);
-        parallel_for(chunks, [&](std::size_t i) {
-            part[i].clear(binning.bins);
-            const auto first = static_cast<std::uint32_t>(i) * kChunk;
-            part[i].count(refs.subspan(range.first + first, std::min(kChunk, range.count - first)), binning);
-        });
+        std::vector<Bins> part(chunks_of(range.count));
+        parallel_for(part.size(), [&](std::size_t i) { count(chunk(refs, range, i), part[i]); });
+        all.clear(binning.bins);
         for (const Bins& b : part) all.add(b, binning.bins);
     }
-    const bool small = range.count <= 16 * kBvhWidth;
-    alignas(16) float scale[4];
-    _mm_store_ps(scale, binning.scale);
+    const bool small = primitives <= 16 * kBvhWidth;
+    alignas(16) float right_cost[kMaxBins][4];
+    Side right, left;
+    for (std::size_t i = bins - 1; i > 0; --i) {
+        right.grow(all, i);
+        _mm_store_ps(right_cost[i], right.cost(small));
+    }
+    __m128 best_cost = _mm_set1_ps(kInfinity), best_bin = _mm_setzero_ps();
+    for (std::size_t i = 1; i < bins; ++i) {
+        left.grow(all, i - 1);
+        const __m128 cost = _mm_add_ps(left.cost(small), _mm_load_ps(right_cost[i]));
+        const __m128 better = _mm_cmplt_ps(cost, best_cost);
+        best_cost = _mm_min_ps(cost, best_cost);
+        best_bin = select(better, _mm_set1_ps(static_cast<float>(i)), best_bin);
+    }
+    alignas(16) float scale[4], costs[4], at[4];
+    _mm_store_ps(scale, binning.scale), _mm_store_ps(costs, best_cost), _mm_store_ps(at, best_bin);
     Split best;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!(scale[axis] > 0.0f)) continue;
-        std::array<float, kMaxBins> right_cost;
-        std::array<Box4, kMaxBins> right;
-        Box4 box;
-        std::uint32_t count = 0;
-        for (std::size_t i = bins - 1; i > 0; --i) {
-            box.grow(all.boxes[axis][i]);
-            count += all.counts[axis][i];
-            right[i] = box;
-            right_cost[i] = count == 0 ? kInfinity : leaf_cost(count, small) * box.half_area();
-        }
-        box = Box4();
-        count = 0;
-        for (std::size_t i = 1; i < bins; ++i) {
-            box.grow(all.boxes[axis][i - 1]);
-            count += all.counts[axis][i - 1];
-            if (count == 0) continue;
-            const float cost = leaf_cost(count, small) * box.half_area() + right_cost[i];
-            if (cost < best.cost) best = {static_cast<int>(axis), static_cast<int>(i), cost, box, right[i]};
-        }
+        if (!(scale[axis] > 0.0f) || !(costs[axis] < best.cost)) continue;
+        best = {static_cast<int>(axis), static_cast<int>(at[axis]), costs[axis], {}, {}};
+    }
+    for (std::size_t i = 0; i < bins && best.axis >= 0; ++i) {
+        const RawBox& box = all.boxes[i][static_cast<std::size_t>(best.axis)];
+        (static_cast<int>(i) < best.bin ? best.left : best.right).grow(box.lo, box.hi);
     }
     return best;
 }
 
-void partition(std::span<BuildRef> refs, const BuildRange& range, const Split& split, BuildRange& left, BuildRange& right) {
-    const Binning binning(range);
-    BuildRef* first = refs.data() + range.first;
-    BuildRef* last = first + range.count;
-    Box4 left_centers, right_centers;
-    const auto is_left = [&](const BuildRef& r, Box4& l, Box4& h) {
-        alignas(16) std::array<int, 4> bin;
-        const __m128 c = r.center2();
-        _mm_store_si128(reinterpret_cast<__m128i*>(bin.data()), binning(c));
-        const bool yes = bin[static_cast<std::size_t>(split.axis)] < split.bin;
-        (yes ? l : h).grow(c, c);
-        return yes;
-    };
-    for (;;) {
-        while (first != last && is_left(*first, left_centers, right_centers)) ++first;
-        if (first == last) break;
-        // *first belongs to the right; look for a partner from the end.
-        do {
-            --last;
-        } while (first != last && !is_left(*last, left_centers, right_centers));
-        if (first == last) break;
-        std::swap(*first, *last);
-        ++first;
+Split best_sweep(std::span<const BuildRef> refs, std::uint32_t first, std::uint32_t count) {
+    std::array<float, kMaxSweep> right_cost;
+    Split best;
+    best.axis = 0;
+    Box4 box;
+    const BuildRef* r = refs.data() + first;
+    for (std::uint32_t i = count - 1; i > 0; --i) {
+        box.grow(r[i].low(), r[i].high());
+        right_cost[i] = leaf_cost(count - i, true) * box.half_area();
     }
-    const auto middle = static_cast<std::uint32_t>(first - refs.data());
-    left = {range.first, middle - range.first, split.left, left_centers};
-    right = {middle, range.first + range.count - middle, split.right, right_centers};
-}
-
-void partition_median(std::span<BuildRef> refs, const BuildRange& range, BuildRange& left, BuildRange& right) {
-    alignas(16) float size[4];
-    _mm_store_ps(size, _mm_sub_ps(range.centers.hi, range.centers.lo));
-    const int axis = size[0] >= size[1] ? (size[0] >= size[2] ? 0 : 2) : (size[1] >= size[2] ? 1 : 2);
-    BuildRef* first = refs.data() + range.first;
-    const std::uint32_t half = range.count / 2;
-    std::nth_element(first, first + half, first + range.count, [axis](const BuildRef& a, const BuildRef& b) {
-        const float ca = a.lo[axis] + a.hi[axis], cb = b.lo[axis] + b.hi[axis];
-        return ca != cb ? ca < cb : a.id < b.id;
-    });
-    left = measure(refs, range.first, half);
-    right = measure(refs, range.first + half, range.count - half);
-}
-
-bool partition_by_kind(std::span<BuildRef> refs, const BuildRange& range, BuildRange& left, BuildRange& right) {
-    BuildRef* first = refs.data() + range.first;
-    const PrimitiveKind kind = kind_of(first->id);
-    BuildRef* middle = std::partition(first, first + range.count, [kind](const BuildRef& r) { return kind_of(r.id) == kind; });
-    const auto count = static_cast<std::uint32_t>(middle - first);
-    if (count == range.count) return false;
-    left = measure(refs, range.first, count);
-    right = measure(refs, range.first + count, range.count - count);
-    return true;
-}
-
-BuildRange measure(std::span<const BuildRef> refs, std::uint32_t first, std::uint32_t count) {
-    BuildRange range{first, count, {}, {}};
-    for (const BuildRef& r : refs.subspan(first, count)) {
-        range.bounds.grow(r.low(), r.high());
-        range.centers.grow(r.center2(), r.center2());
+    box = Box4();
+    for (std::uint32_t i = 1; i < count; ++i) {
+        box.grow(r[i - 1].low(), r[i - 1].high());
+        const float cost = leaf_cost(i, true) * box.half_area() + right_cost[i];
+        if (cost < best.cost) best.cost = cost, best.bin = static_cast<int>(i);
     }
-    return range;
+    // Areas that overflow leave no best; any cut is as good then.
+    if (best.bin == 0) best.bin = static_cast<int>(count / 2);
+    for (std::uint32_t i = 0; i < count; ++i)
+        (static_cast<int>(i) < best.bin ? best.left : best.right).grow(r[i].low(), r[i].high());
+    return best;
 }
 
 }  // namespace glint

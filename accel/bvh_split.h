@@ -5,10 +5,13 @@
 
 #include <emmintrin.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "accel/geometry.h"
+#include "accel/huge_pages.h"
 #include "accel/parallel.h"
 
 namespace glint {
@@ -30,12 +33,12 @@ struct Box4 {
     }
 };
 
-// A primitive's bounds, and its id beside them.
+// The bounds of a primitive with its id, or of a cluster of primitives with its number.
 struct alignas(16) BuildRef {
     float lo[3];
     PrimitiveId id;
     float hi[3];
-    std::uint32_t zero;
+    float weight;  // primitives in it; a float, because the bits of a small integer are a subnormal one and slow
 
     [[nodiscard]] __m128 low() const {
         // Without the id, whose bits are a subnormal float and slow.
@@ -46,11 +49,23 @@ struct alignas(16) BuildRef {
     [[nodiscard]] __m128 center2() const { return _mm_add_ps(low(), high()); }
 };
 
+using BuildRefs = std::vector<BuildRef, HugePageAllocator<BuildRef>>;
+
 // A set of references with what is known of it.
 struct BuildRange {
     std::uint32_t first = 0, count = 0;
     Box4 bounds, centers;  // centers: of twice the centres
 };
+
+// Large sets are worked on by all threads, in chunks of this size.
+constexpr std::uint32_t kChunk = 1u << 14;
+inline bool in_chunks(const BuildRange& range) { return range.count > 2 * kChunk; }
+inline std::size_t chunks_of(std::size_t count) { return (count + kChunk - 1) / kChunk; }
+template <class Ref>
+std::span<Ref> chunk(std::span<Ref> refs, const BuildRange& range, std::size_t i) {
+    const auto begin = static_cast<std::uint32_t>(i) * kChunk;
+    return refs.subspan(range.first + begin, std::min(kChunk, range.count - begin));
+}
 
 // Maps a centre to its bin; the same function when counting and when partitioning.
 struct Binning {
@@ -59,7 +74,9 @@ struct Binning {
 
     explicit Binning(const BuildRange& range);
     // The bins along the three axes in the first three lanes.
-    [[nodiscard]] __m128i operator()(__m128 center2) const;
+    [[nodiscard]] __m128i operator()(__m128 center2) const {
+        return _mm_cvttps_epi32(_mm_mul_ps(_mm_sub_ps(center2, lo), scale));
+    }
 };
 
 struct Split {
@@ -72,14 +89,21 @@ struct Split {
 // Cost of `count` primitives in one leaf or, for more, in the leaves to come; a node visit is 1.
 [[nodiscard]] float leaf_cost(std::uint32_t count, bool small);
 
-[[nodiscard]] Split best_split(std::span<const BuildRef> refs, const BuildRange& range, const ParallelFor& parallel_for);
+// The cheapest cut between bins. `primitives`: how many there are; more than range.count where the references are clusters.
+[[nodiscard]] Split best_split(std::span<const BuildRef> refs, const BuildRange& range, std::uint32_t primitives,
+                               const ParallelFor& parallel_for);
+// The cheapest cut of at most kMaxSweep primitives in the order they lie in: axis is 0, bin the size of the left side.
+constexpr std::uint32_t kMaxSweep = 64;
+[[nodiscard]] Split best_sweep(std::span<const BuildRef> refs, std::uint32_t first, std::uint32_t count);
 // Cuts `range` at `split`; the order within the sides is of no importance.
-void partition(std::span<BuildRef> refs, const BuildRange& range, const Split& split, BuildRange& left, BuildRange& right);
+void partition(std::span<BuildRef> refs, const BuildRange& range, const Split& split, const ParallelFor& parallel_for,
+               BuildRange& left, BuildRange& right);
 // Halves `range` by the number of its members, along the widest axis of their centres.
 void partition_median(std::span<BuildRef> refs, const BuildRange& range, BuildRange& left, BuildRange& right);
 // Splits off the members of the first member's kind. Returns false when all are of one kind.
 bool partition_by_kind(std::span<BuildRef> refs, const BuildRange& range, BuildRange& left, BuildRange& right);
-// Bounds of refs[first, first + count).
+// Bounds of all, and of refs[first, first + count).
+[[nodiscard]] BuildRange measure(std::span<const BuildRef> refs, const ParallelFor& parallel_for);
 [[nodiscard]] BuildRange measure(std::span<const BuildRef> refs, std::uint32_t first, std::uint32_t count);
 
 }  // namespace glint
