@@ -51,7 +51,8 @@ Curve fit_curve(const Geometry& geometry) {
     __m128d sum[2]{}, squares[2]{};
     double n = 0.0;
     const auto add = [&](std::size_t, PrimitiveId id) {
-        const __m128 c = make_ref(geometry, id).center2();
+        const Box4 bounds = bounds_of(geometry, id);
+        const __m128 c = _mm_add_ps(bounds.lo, bounds.hi);
         box.grow(c, c);
         const __m128d halves[2]{_mm_cvtps_pd(c), _mm_cvtps_pd(_mm_movehl_ps(c, c))};
         for (int i = 0; i < 2; ++i) {
@@ -133,16 +134,11 @@ void gather(const Geometry& geometry, std::span<const Key> keys, Cell cell, Buil
     for (const Cell& c : cells) {
         Box4 box;
         for (std::uint32_t i = c.first; i < c.last; ++i) {
-            refs[i] = make_ref(geometry, keys[i].id);
-            box.grow(refs[i].low(), refs[i].high());
+            const Box4 bounds = bounds_of(geometry, keys[i].id);
+            refs[i] = make_ref(bounds, keys[i].id, 1.0f);
+            box.grow(bounds);
         }
-        BuildRef cluster;
-        alignas(16) float lo[4], hi[4];
-        _mm_store_ps(lo, box.lo), _mm_store_ps(hi, box.hi);
-        for (int axis = 0; axis < 3; ++axis) cluster.lo[axis] = lo[axis], cluster.hi[axis] = hi[axis];
-        cluster.id = c.first;
-        cluster.weight = static_cast<float>(c.last - c.first);
-        clusters.push_back(cluster);
+        clusters.push_back(make_ref(box, c.first, static_cast<float>(c.last - c.first)));
     }
 }
 
@@ -154,7 +150,8 @@ void cluster_along_curve(const Geometry& geometry, const ParallelFor& parallel_f
     const Curve curve = fit_curve(geometry);
     parallel_for(chunks_of(keys.size()), [&](std::size_t i) {
         for_primitives(geometry, i * kChunk, (i + 1) * kChunk, [&](std::size_t at, PrimitiveId id) {
-            keys[at] = {curve.code(make_ref(geometry, id).center2()), id};
+            const Box4 box = bounds_of(geometry, id);
+            keys[at] = {curve.code(_mm_add_ps(box.lo, box.hi)), id};
         });
     });
     sort(keys, parallel_for);

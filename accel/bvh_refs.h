@@ -5,7 +5,7 @@
 
 namespace glint {
 
-// Adds no id twice: calls use(i, id) for the primitives from first to last - 1 of all bounded ones, in ascending order of ids.
+// Calls use(i, id) for the primitives from first to last - 1 of all bounded ones, in ascending order of ids.
 template <class Use>
 void for_primitives(const Geometry& geometry, std::size_t first, std::size_t last, const Use& use) {
     std::size_t begin = 0;
@@ -17,21 +17,28 @@ void for_primitives(const Geometry& geometry, std::size_t first, std::size_t las
     }
 }
 
-inline BuildRef make_ref(const Geometry& geometry, PrimitiveId id) {
-    BuildRef r;
+// x, y, z and 0, without reading behind the last vertex.
+inline __m128 load_vertex(const glm::vec3& v) {
+    return _mm_movelh_ps(_mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(&v.x))), _mm_load_ss(&v.z));
+}
+
+inline Box4 bounds_of(const Geometry& geometry, PrimitiveId id) {
     if (kind_of(id) == PrimitiveKind::triangle) {
         const std::array<std::uint32_t, 3>& t = geometry.triangles[index_of(id)];
-        const glm::vec3 &a = geometry.vertices[t[0]], &b = geometry.vertices[t[1]], &c = geometry.vertices[t[2]];
-        for (int axis = 0; axis < 3; ++axis) {
-            r.lo[axis] = std::min(std::min(a[axis], b[axis]), c[axis]);
-            r.hi[axis] = std::max(std::max(a[axis], b[axis]), c[axis]);
-        }
-    } else {
-        const Aabb box = geometry.bounds(id);
-        for (int axis = 0; axis < 3; ++axis) r.lo[axis] = box.lo[axis], r.hi[axis] = box.hi[axis];
+        const __m128 a = load_vertex(geometry.vertices[t[0]]), b = load_vertex(geometry.vertices[t[1]]);
+        const __m128 c = load_vertex(geometry.vertices[t[2]]);
+        return {_mm_min_ps(_mm_min_ps(a, b), c), _mm_max_ps(_mm_max_ps(a, b), c)};
     }
+    const Aabb box = geometry.bounds(id);
+    return {load_vertex(box.lo), load_vertex(box.hi)};
+}
+
+inline BuildRef make_ref(const Box4& box, std::uint32_t id, float weight) {
+    BuildRef r;
+    _mm_store_ps(r.lo, box.lo);
+    _mm_store_ps(r.hi, box.hi);
     r.id = id;
-    r.weight = 1.0f;
+    r.weight = weight;
     return r;
 }
 
@@ -40,7 +47,7 @@ inline BuildRef make_ref(const Geometry& geometry, PrimitiveId id) {
     BuildRefs refs(geometry.bounded_count());
     parallel_for(chunks_of(refs.size()), [&](std::size_t i) {
         for_primitives(geometry, i * kChunk, (i + 1) * kChunk,
-                       [&](std::size_t at, PrimitiveId id) { refs[at] = make_ref(geometry, id); });
+                       [&](std::size_t at, PrimitiveId id) { refs[at] = make_ref(bounds_of(geometry, id), id, 1.0f); });
     });
     return refs;
 }

@@ -8,12 +8,6 @@
 namespace glint {
 namespace {
 
-// Small sets: a leaf where one costs no more than the best cut.
-bool better_as_leaf(const Candidate& c) {
-    // A node visit costs 1, a full block 1: never is a flat or tiny set worse as a leaf.
-    return !(c.area + c.split.cost < leaf_cost(c.primitives, true) * c.area);
-}
-
 bool of_one_kind(std::span<const PrimitiveId> ids) {
     return std::ranges::all_of(ids, [&](PrimitiveId id) { return kind_of(id) == kind_of(ids.front()); });
 }
@@ -23,15 +17,15 @@ std::span<PrimitiveId> ids_of(std::span<const BuildRef> refs, LeafIds& ids) {
     return std::span(ids).first(refs.size());
 }
 
-// A set of primitives with its cut between bins.
+// A set of primitives with its cut between bins. What fits a leaf is one: it costs no more than a node alone.
 Candidate examine_bins(std::span<BuildRef> refs, const BuildRange& range, int level, const ParallelFor& parallel_for) {
     Candidate c;
     c.range = range;
     c.area = range.bounds.half_area();
     c.primitives = range.count;
-    if (level < kSahLevels && range.count > 1) c.split = best_split(refs, range, range.count, parallel_for);
     LeafIds ids;
-    c.leaf = range.count <= kBvhWidth && better_as_leaf(c) && of_one_kind(ids_of(refs.subspan(range.first, range.count), ids));
+    c.leaf = range.count <= kBvhWidth && of_one_kind(ids_of(refs.subspan(range.first, range.count), ids));
+    if (!c.leaf && level < kSahLevels) c.split = best_split(refs, range, range.count, parallel_for);
     return c;
 }
 
@@ -89,13 +83,14 @@ Candidate FastSets::examine(BuildRange range, SetKind kind, int level, const Par
         c.primitives = 0;
         for (const BuildRef& cluster : std::span(clusters_).subspan(range.first, range.count))
             c.primitives += static_cast<std::uint32_t>(cluster.weight);
-        if (level < kSahLevels) c.split = best_split(clusters_, range, c.primitives, parallel_for);
-    } else if (range.count > 1) {
-        c.split = best_sweep(refs_, range.first, range.count);
     }
-    if (c.primitives <= kBvhWidth && better_as_leaf(c)) {
-        LeafIds ids;
-        c.leaf = of_one_kind(gather(c, ids));
+    LeafIds ids;
+    c.leaf = c.primitives <= kBvhWidth && of_one_kind(gather(c, ids));
+    if (c.leaf) return c;
+    if (kind == SetKind::in_order) {
+        c.split = best_sweep(refs_, range.first, range.count);
+    } else if (level < kSahLevels) {
+        c.split = best_split(clusters_, range, c.primitives, parallel_for);
     }
     return c;
 }

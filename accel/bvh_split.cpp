@@ -145,25 +145,27 @@ Split best_split(std::span<const BuildRef> refs, const BuildRange& range, std::u
 }
 
 Split best_sweep(std::span<const BuildRef> refs, std::uint32_t first, std::uint32_t count) {
-    std::array<float, kMaxSweep> right_cost;
-    Split best;
-    best.axis = 0;
+    static const std::array<float, kMaxSweep> kLeafCost = [] {
+        std::array<float, kMaxSweep> cost;
+        for (std::uint32_t i = 0; i < kMaxSweep; ++i) cost[i] = leaf_cost(i, true);
+        return cost;
+    }();
+    alignas(16) float right[kMaxSweep][8];  // the box of refs[i] to the last, and its cost where a lane is free
     Box4 box;
     const BuildRef* r = refs.data() + first;
     for (std::uint32_t i = count - 1; i > 0; --i) {
         box.grow(r[i].low(), r[i].high());
-        right_cost[i] = leaf_cost(count - i, true) * box.half_area();
+        _mm_store_ps(right[i], box.lo), _mm_store_ps(right[i] + 4, box.hi);
+        right[i][3] = kLeafCost[count - i] * box.half_area();
     }
+    Split best;
     box = Box4();
     for (std::uint32_t i = 1; i < count; ++i) {
         box.grow(r[i - 1].low(), r[i - 1].high());
-        const float cost = leaf_cost(i, true) * box.half_area() + right_cost[i];
-        if (cost < best.cost) best.cost = cost, best.bin = static_cast<int>(i);
+        const float cost = kLeafCost[i] * box.half_area() + right[i][3];
+        if (cost < best.cost || best.axis < 0) best = {0, static_cast<int>(i), cost, box, {}};
     }
-    // Areas that overflow leave no best; any cut is as good then.
-    if (best.bin == 0) best.bin = static_cast<int>(count / 2);
-    for (std::uint32_t i = 0; i < count; ++i)
-        (static_cast<int>(i) < best.bin ? best.left : best.right).grow(r[i].low(), r[i].high());
+    best.right = {_mm_load_ps(right[best.bin]), _mm_load_ps(right[best.bin] + 4)};
     return best;
 }
 

@@ -27,9 +27,9 @@ struct Box4 {
     void grow(const Box4& b) { grow(b.lo, b.hi); }
     // Half the surface area; 0 when empty.
     [[nodiscard]] float half_area() const {
-        alignas(16) float d[4];
-        _mm_store_ps(d, _mm_sub_ps(hi, lo));
-        return d[0] >= 0.0f ? d[0] * d[1] + d[1] * d[2] + d[2] * d[0] : 0.0f;
+        const __m128 d = _mm_max_ps(_mm_sub_ps(hi, lo), _mm_setzero_ps());
+        const __m128 m = _mm_mul_ps(d, _mm_shuffle_ps(d, d, _MM_SHUFFLE(3, 0, 2, 1)));
+        return _mm_cvtss_f32(m) + _mm_cvtss_f32(_mm_shuffle_ps(m, m, 1)) + _mm_cvtss_f32(_mm_movehl_ps(m, m));
     }
 };
 

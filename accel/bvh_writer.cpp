@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "accel/bvh_refs.h"
+
 namespace glint {
 namespace {
 
@@ -15,19 +17,13 @@ std::size_t append(BvhTree::Units& units) {
     return at;
 }
 
-// x, y, z and something finite, without reading behind the last vertex.
-__m128 load(const glm::vec3& v) {
-    const __m128 xy = _mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(&v.x)));
-    return _mm_movelh_ps(xy, _mm_load_ss(&v.z));
-}
-
 void write(TriangleBlock& block, std::span<const PrimitiveId, kBvhWidth> ids, const Geometry& geometry) {
     for (std::size_t lane = 0; lane < kBvhWidth; lane += 4) {
         const std::array<std::uint32_t, 3>* t[4];
         for (std::size_t i = 0; i < 4; ++i) t[i] = &geometry.triangles[index_of(ids[lane + i])];
         for (std::size_t corner = 0; corner < 3; ++corner) {
-            __m128 x = load(geometry.vertices[(*t[0])[corner]]), y = load(geometry.vertices[(*t[1])[corner]]);
-            __m128 z = load(geometry.vertices[(*t[2])[corner]]), w = load(geometry.vertices[(*t[3])[corner]]);
+            __m128 x = load_vertex(geometry.vertices[(*t[0])[corner]]), y = load_vertex(geometry.vertices[(*t[1])[corner]]);
+            __m128 z = load_vertex(geometry.vertices[(*t[2])[corner]]), w = load_vertex(geometry.vertices[(*t[3])[corner]]);
             _MM_TRANSPOSE4_PS(x, y, z, w);
             _mm_store_ps(&block.v[3 * corner][lane], x);
             _mm_store_ps(&block.v[3 * corner + 1][lane], y);
@@ -59,14 +55,52 @@ std::size_t append_block(BvhTree::Units& units, std::span<const PrimitiveId, kBv
     return unit;
 }
 
-// The numbers 0 to 7 in the order of descending keys, the first one first at equal keys; sorting by insertion.
-using Order = std::array<std::uint32_t, kBvhWidth>;
-Order descending(const std::array<float, kBvhWidth>& key, std::size_t n) {
-    Order order{0, 1, 2, 3, 4, 5, 6, 7};
-    for (std::size_t i = 1; i < n; ++i) {
-        for (std::size_t k = i; k > 0 && key[order[k]] > key[order[k - 1]]; --k) std::swap(order[k], order[k - 1]);
+// Without branches, which would be guessed wrong: the network of Batcher 1968 for eight.
+void sort(std::array<PrimitiveId, kBvhWidth>& ids) {
+    constexpr std::array<std::array<unsigned char, 2>, 19> kSwaps{{{0, 1},
+                                                                   {2, 3},
+                                                                   {4, 5},
+                                                                   {6, 7},
+                                                                   {0, 2},
+                                                                   {1, 3},
+                                                                   {4, 6},
+                                                                   {5, 7},
+                                                                   {1, 2},
+                                                                   {5, 6},
+                                                                   {0, 4},
+                                                                   {1, 5},
+                                                                   {2, 6},
+                                                                   {3, 7},
+                                                                   {2, 4},
+                                                                   {3, 5},
+                                                                   {1, 2},
+                                                                   {3, 4},
+                                                                   {5, 6}}};
+    for (const auto& [i, k] : kSwaps) {
+        const PrimitiveId low = std::min(ids[i], ids[k]), high = std::max(ids[i], ids[k]);
+        ids[i] = low, ids[k] = high;
     }
-    return order;
+}
+
+// How many of the keys are greater than each, or equal and before it.
+std::array<std::uint32_t, kBvhWidth> ranks(const std::array<float, kBvhWidth>& key) {
+    const __m128 low = _mm_loadu_ps(key.data()), high = _mm_loadu_ps(key.data() + 4);
+    __m128i low_rank = _mm_setzero_si128(), high_rank = _mm_setzero_si128();
+    const __m128i low_lane = _mm_setr_epi32(0, 1, 2, 3), high_lane = _mm_setr_epi32(4, 5, 6, 7);
+    for (int i = 0; i < kBvhWidth; ++i) {
+        const __m128 k = _mm_set1_ps(key[static_cast<std::size_t>(i)]);
+        const __m128i lane = _mm_set1_epi32(i);
+        const auto before = [&](__m128 other, __m128i other_lane) {
+            const __m128 earlier = _mm_castsi128_ps(_mm_cmplt_epi32(lane, other_lane));
+            return _mm_castps_si128(_mm_or_ps(_mm_cmpgt_ps(k, other), _mm_and_ps(_mm_cmpeq_ps(k, other), earlier)));
+        };
+        low_rank = _mm_sub_epi32(low_rank, before(low, low_lane));
+        high_rank = _mm_sub_epi32(high_rank, before(high, high_lane));
+    }
+    std::array<std::uint32_t, kBvhWidth> rank;
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(rank.data()), low_rank);
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(rank.data() + 4), high_rank);
+    return rank;
 }
 
 }  // namespace
@@ -80,11 +114,11 @@ std::size_t BvhPart::append_node() {
 BvhRef BvhPart::append_leaf(const Geometry& geometry, std::span<PrimitiveId> ids) {
     ++leaves;
     // Ascending ids make equal trees equal in memory, whatever order the threads left.
-    for (std::size_t i = 1; i < ids.size(); ++i) {
-        for (std::size_t k = i; k > 0 && ids[k] < ids[k - 1]; --k) std::swap(ids[k], ids[k - 1]);
-    }
     std::array<PrimitiveId, kBvhWidth> all;
-    for (std::size_t i = 0; i < kBvhWidth; ++i) all[i] = ids[std::min(i, ids.size() - 1)];
+    all.fill(~PrimitiveId{0});
+    std::ranges::copy(ids, all.begin());
+    sort(all);
+    std::fill(all.begin() + static_cast<std::ptrdiff_t>(ids.size()), all.end(), all[ids.size() - 1]);
     const PrimitiveKind kind = kind_of(all[0]);
     std::size_t unit = 0;
     switch (kind) {
@@ -109,7 +143,7 @@ void BvhPart::move_references(BvhRef by) {
 }
 
 void write_bounds(BvhNode& node, std::span<const Box4> children) {
-    std::array<std::array<float, kBvhWidth>, 4> key{};  // of octants 0 to 3 (bit 2 clear); the others are their reverses
+    std::array<std::array<float, kBvhWidth>, 4> key;  // of octants 0 to 3 (bit 2 clear); the others are their reverses
     for (std::size_t i = 0; i < kBvhWidth; ++i) {
         const Box4 box = i < children.size() ? children[i] : Box4();
         alignas(16) float lo[4], hi[4];
@@ -120,17 +154,18 @@ void write_bounds(BvhNode& node, std::span<const Box4> children) {
             node.bounds[2 * axis + 1][i] = hi[axis];
         }
         node.child[i] = node.order[i] = 0;
-        for (std::size_t octant = 0; octant < 4 && i < children.size(); ++octant) {
-            const float x = lo[0] + hi[0], y = lo[1] + hi[1], z = lo[2] + hi[2];
-            key[octant][i] = ((octant & 1u) != 0 ? x : -x) + ((octant & 2u) != 0 ? y : -y) - z;
+        const float x = lo[0] + hi[0], y = lo[1] + hi[1], z = lo[2] + hi[2];
+        for (std::size_t octant = 0; octant < 4; ++octant) {
+            const float k = ((octant & 1u) != 0 ? x : -x) + ((octant & 2u) != 0 ? y : -y) - z;
+            key[octant][i] = i < children.size() ? k : -kInfinity;  // absent children stay behind
         }
     }
     for (unsigned octant = 0; octant < 4; ++octant) {
-        const Order far_first = descending(key[octant], children.size());
-        for (std::size_t i = 0; i < kBvhWidth; ++i) {
-            const std::size_t reversed = i < children.size() ? children.size() - 1 - i : i;
-            node.order[i] |= far_first[i] << (3 * octant);
-            node.order[i] |= far_first[reversed] << (3 * (7 - octant));
+        const auto rank = ranks(key[octant]);
+        for (std::uint32_t i = 0; i < kBvhWidth; ++i) {
+            const std::size_t reversed = i < children.size() ? children.size() - 1 - rank[i] : i;
+            node.order[rank[i]] |= i << (3 * octant);
+            node.order[reversed] |= i << (3 * (7 - octant));
         }
     }
 }
