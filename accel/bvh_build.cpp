@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "accel/bvh.h"
+#include "accel/bvh_refs.h"
 #include "accel/bvh_sets.h"
 #include "accel/bvh_writer.h"
 
@@ -12,7 +13,7 @@ namespace {
 // Sets up to this size are built by one task each; larger ones are cut by all threads together.
 constexpr std::uint32_t kTaskSize = 1u << 14;
 // Tasks whose results wait in memory at a time before they join the tree.
-constexpr std::size_t kBatch = 16;
+constexpr std::size_t kBatch = 8;
 
 template <class Sets>
 class Builder {
@@ -100,12 +101,7 @@ private:
         std::array<Box4, kBvhWidth> boxes;
         for (std::size_t i = 0; i < n; ++i) boxes[i] = children[i].range.bounds;
         write_bounds(part.node(node), std::span(boxes).first(n));
-        for (std::size_t i = 0; i < n; ++i) {
-            if (!children[i].leaf) continue;
-            LeafIds ids;
-            const BvhRef leaf = part.append_leaf(geometry_, sets_.gather(children[i], ids));
-            part.node(node).child[i] = leaf;
-        }
+        append_leaves(part, node, std::span(children).first(n));
         for (std::size_t i = 0; i < n; ++i) {
             if (children[i].leaf) continue;
             if (top && children[i].primitives <= kTaskSize) {
@@ -115,6 +111,25 @@ private:
             const std::size_t below = part.append_node();
             part.node(node).child[i] = static_cast<BvhRef>(below);
             fill_node(part, below, children[i], level + 1, top);
+        }
+    }
+
+    // The leaves of a node together, so that what they need is on its way while others are written.
+    void append_leaves(BvhPart& part, std::size_t node, std::span<const Candidate> children) {
+        std::array<LeafIds, kBvhWidth> ids;
+        std::array<std::span<PrimitiveId>, kBvhWidth> some;
+        for (std::size_t i = 0; i < children.size(); ++i) {
+            if (!children[i].leaf) continue;
+            some[i] = sets_.gather(children[i], ids[i]);
+            for (const PrimitiveId id : some[i]) fetch_indices(geometry_, id);
+        }
+        for (std::size_t i = 0; i < children.size(); ++i) {
+            for (const PrimitiveId id : some[i]) fetch_vertices(geometry_, id);
+        }
+        for (std::size_t i = 0; i < children.size(); ++i) {
+            if (!children[i].leaf) continue;
+            const BvhRef leaf = part.append_leaf(geometry_, some[i]);
+            part.node(node).child[i] = leaf;
         }
     }
 

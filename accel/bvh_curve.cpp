@@ -16,7 +16,7 @@ constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
 constexpr std::size_t kGatherSize = 1u << 13;
 // Clusters' sizes are floats, which count no further than 2^24.
 constexpr std::size_t kMaxCluster = 1u << 23;
-constexpr std::size_t kClusterSize = 32;
+constexpr std::size_t kClusterSize = 40;
 
 struct Key {
     std::uint32_t code;
@@ -134,6 +134,8 @@ void gather(const Geometry& geometry, std::span<const Key> keys, Cell cell, Buil
     for (const Cell& c : cells) {
         Box4 box;
         for (std::uint32_t i = c.first; i < c.last; ++i) {
+            fetch_indices(geometry, keys[std::min<std::size_t>(i + 32, keys.size() - 1)].id);
+            fetch_vertices(geometry, keys[std::min<std::size_t>(i + 16, keys.size() - 1)].id);
             const Box4 bounds = bounds_of(geometry, keys[i].id);
             refs[i] = make_ref(bounds, keys[i].id, 1.0f);
             box.grow(bounds);

@@ -22,6 +22,15 @@ inline __m128 load_vertex(const glm::vec3& v) {
     return _mm_movelh_ps(_mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(&v.x))), _mm_load_ss(&v.z));
 }
 
+// Asks for a triangle's indices, or for the vertices when those are there: in the order of a tree neither lies behind the last.
+inline void fetch_indices(const Geometry& geometry, PrimitiveId id) {
+    if (kind_of(id) == PrimitiveKind::triangle) _mm_prefetch(geometry.triangles.data() + index_of(id), _MM_HINT_T0);
+}
+inline void fetch_vertices(const Geometry& geometry, PrimitiveId id) {
+    if (kind_of(id) != PrimitiveKind::triangle) return;
+    for (const std::uint32_t v : geometry.triangles[index_of(id)]) _mm_prefetch(geometry.vertices.data() + v, _MM_HINT_T0);
+}
+
 inline Box4 bounds_of(const Geometry& geometry, PrimitiveId id) {
     if (kind_of(id) == PrimitiveKind::triangle) {
         const std::array<std::uint32_t, 3>& t = geometry.triangles[index_of(id)];

@@ -76,6 +76,7 @@ void sort(std::array<PrimitiveId, kBvhWidth>& ids) {
                                                                    {1, 2},
                                                                    {3, 4},
                                                                    {5, 6}}};
+#pragma GCC unroll 19
     for (const auto& [i, k] : kSwaps) {
         const PrimitiveId low = std::min(ids[i], ids[k]), high = std::max(ids[i], ids[k]);
         ids[i] = low, ids[k] = high;
