@@ -13,7 +13,7 @@ namespace {
 // Sets up to this size are built by one task each; larger ones are cut by all threads together.
 constexpr std::uint32_t kTaskSize = 1u << 14;
 // Tasks whose results wait in memory at a time before they join the tree.
-constexpr std::size_t kBatch = 8;
+constexpr std::size_t kBatch = 16;
 
 template <class Sets>
 class Builder {

@@ -81,8 +81,15 @@ Candidate FastSets::examine(BuildRange range, SetKind kind, int level, const Par
     c.primitives = range.count;
     if (kind == SetKind::clusters) {
         c.primitives = 0;
-        for (const BuildRef& cluster : std::span(clusters_).subspan(range.first, range.count))
-            c.primitives += static_cast<std::uint32_t>(cluster.weight);
+        for (const BuildRef& cluster : std::span(clusters_).subspan(range.first, range.count)) {
+            const auto size = static_cast<std::uint32_t>(cluster.weight);
+            c.primitives += size;
+            // Its members are wanted soon, and the last one first.
+            if (range.count <= 3 && size <= kMaxSweep) {
+                const BuildRef* members = refs_.data() + cluster.id;
+                for (std::uint32_t i = 0; i < size; i += 2) _mm_prefetch(members + (size - 1 - i), _MM_HINT_T0);
+            }
+        }
     }
     LeafIds ids;
     c.leaf = c.primitives <= kBvhWidth && of_one_kind(gather(c, ids));

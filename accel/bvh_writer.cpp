@@ -50,6 +50,8 @@ template <class Block>
 std::size_t append_block(BvhTree::Units& units, std::span<const PrimitiveId, kBvhWidth> ids, const Geometry& geometry) {
     const std::size_t unit = append<Block>(units);
     Block& block = *reinterpret_cast<Block*>(units[unit].bytes);
+    // What pads a block to whole units must not hang on what the memory was before.
+    std::memset(units[unit + sizeof(Block) / kBvhUnit - 1].bytes, 0, kBvhUnit);
     std::ranges::copy(ids, block.id);
     write(block, ids, geometry);
     return unit;

@@ -1,5 +1,5 @@
-// A walk over a whole tree that notes what breaks its invariants, and what a random ray would cost in it.
-// Knows the layout of the tree, not how it was built.
+// Walks a tree as it lies in memory, and checks what every one must be: each primitive in one leaf, boxes exactly around what
+// lies below, the children's order far first. Knows no builder.
 #pragma once
 
 #include <algorithm>

@@ -13,6 +13,13 @@
 namespace glint {
 namespace {
 
+BvhTree build(const Geometry& geometry, BuildQuality quality) { return build_bvh(geometry, serial_for, quality); }
+constexpr std::array kQualities{BuildQuality::fast, BuildQuality::quality};
+
+void expect_sound(const Geometry& geometry) {
+    for (const BuildQuality quality : kQualities) expect_sound(geometry, build(geometry, quality));
+}
+
 Geometry spheres(std::size_t count, float radius_step) {
     Geometry g;
     for (std::size_t i = 0; i < count; ++i) g.spheres.push_back({glm::vec3(1.0f), 1.0f + radius_step * static_cast<float>(i)});
@@ -20,12 +27,14 @@ Geometry spheres(std::size_t count, float radius_step) {
 }
 
 TEST(BvhTree, S_BVH_01_NoneOneAndTwoPrimitives) {
-    EXPECT_TRUE(build_bvh(Geometry()).units.empty());
-    EXPECT_TRUE(build_bvh(scenes::planes_only()).units.empty());
+    for (const BuildQuality quality : kQualities) {
+        EXPECT_TRUE(build(Geometry(), quality).units.empty());
+        EXPECT_TRUE(build(scenes::planes_only(), quality).units.empty());
+    }
     for (const std::size_t n : {1u, 2u, 8u, 9u}) {
         for (const float step : {0.0f, 1.0f}) {
             const Geometry g = spheres(n, step);
-            expect_sound(g, build_bvh(g));
+            expect_sound(g);
         }
     }
     const Bvh empty(std::make_shared<const Geometry>());
@@ -35,8 +44,8 @@ TEST(BvhTree, S_BVH_01_NoneOneAndTwoPrimitives) {
 
 TEST(BvhTree, S_BVH_02_EqualCentroidsEndInSmallLeaves) {
     const Geometry concentric = spheres(100000, 1.0e-3f), same = scenes::same_triangle_70000();
-    expect_sound(concentric, build_bvh(concentric));
-    expect_sound(same, build_bvh(same));
+    expect_sound(concentric);
+    expect_sound(same);
     const Bvh bvh(std::make_shared<const Geometry>(concentric));
     const Hit hit = bvh.closest_hit({glm::vec3(1.0f), glm::vec3(0.0f, 1.0f, 0.0f)});
     EXPECT_EQ(hit.primitive, make_id(PrimitiveKind::sphere, 0)) << "the innermost";
@@ -45,7 +54,7 @@ TEST(BvhTree, S_BVH_02_EqualCentroidsEndInSmallLeaves) {
 
 TEST(BvhTree, S_BVH_03_DepthIsBoundedWherePrimitivesPeelOffOneByOne) {
     Geometry g = scenes::powers_of_two();
-    expect_sound(g, build_bvh(g));
+    expect_sound(g);
     // Shrinking towards a corner in all directions, and many of each size.
     Random random(3);
     for (int i = -120; i < 58; ++i) {
@@ -54,9 +63,8 @@ TEST(BvhTree, S_BVH_03_DepthIsBoundedWherePrimitivesPeelOffOneByOne) {
             g.spheres.push_back({size * random.in_cube(-1.0f, 1.0f), 0.1f * size});
         }
     }
-    const BvhTree tree = build_bvh(g);
-    expect_sound(g, tree);
-    EXPECT_GT(tree.depth, 16) << "not the depth this test is for";
+    expect_sound(g);
+    EXPECT_GT(build_bvh(g).depth, 16) << "not the depth this test is for";
 }
 
 // What one closest-hit query costs, by the rules of the traversal but without its order.
@@ -87,12 +95,14 @@ double visits_per_ray(const Geometry& geometry, const BvhTree& tree) {
 }
 
 TEST(BvhTree, S_BVH_04_OneHugeTriangleCostsLessThanThreefold) {
-    Geometry g = triangles_in_cube(4, 100000, glm::vec3(0.0f), 1.0f, 0.01f);
-    const double without = visits_per_ray(g, build_bvh(g));
-    add_triangle(g, glm::vec3(-500.0f, -500.0f, -500.0f), glm::vec3(500.0f, 499.0f, 500.0f), glm::vec3(0.0f, 300.0f, 5.0f));
-    const BvhTree with = build_bvh(g);
-    expect_sound(g, with);
-    EXPECT_LE(visits_per_ray(g, with), 3.0 * without);
+    const Geometry g = triangles_in_cube(4, 100000, glm::vec3(0.0f), 1.0f, 0.01f);
+    Geometry h = g;
+    add_triangle(h, glm::vec3(-500.0f, -500.0f, -500.0f), glm::vec3(500.0f, 499.0f, 500.0f), glm::vec3(0.0f, 300.0f, 5.0f));
+    for (const BuildQuality quality : kQualities) {
+        const BvhTree with = build(h, quality);
+        expect_sound(h, with);
+        EXPECT_LE(visits_per_ray(h, with), 3.0 * visits_per_ray(g, build(g, quality)));
+    }
 }
 
 TEST(BvhTree, S_BVH_05_WhatNoQueryCanAnswerIsInvalid) {
@@ -181,6 +191,9 @@ TEST_P(OnScene, S_BVH_08_TheTreeIsSoundAndNoWorseThanMedians) {
     const double cost = Survey(g, tree).cost, median = MedianTree(g).cost();
     // Along a row of equal balls every cut costs alike, so greedy cuts leave more blocks part full than halving does.
     EXPECT_LE(cost, (GetParam().name == "sphere_row" ? 1.1 : 1.001) * median);
+    const BvhTree fast = build(g, BuildQuality::fast);
+    expect_sound(g, fast);
+    EXPECT_LE(Survey(g, fast).cost, 1.25 * std::max(cost, median)) << "the fast tree";
 }
 
 // The invariant that makes culling exact: a hit's t lies in the interval of every box above its primitive.

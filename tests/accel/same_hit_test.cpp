@@ -28,6 +28,7 @@ public:
             trees_.emplace_back(geometry_, serial_for, isa);
             grids_.emplace_back(geometry_, serial_for, isa);
         }
+        trees_.emplace_back(geometry_, serial_for, isa_in_use(), BuildQuality::fast);
     }
 
     // At most kRayBatch rays; truth()[i] afterwards belongs to rays[i].
@@ -40,10 +41,11 @@ public:
             check(!h.found() || (h.t > 0.0f && h.t <= ray.t_max && h.t < kInfinity), ray, h, h, "range of t");
         }
         rays_ += rays.size();
-        for (std::size_t i = 0; i < trees_.size(); ++i) {
+        for (std::size_t i = 0; i < grids_.size(); ++i) {
             compare_with(trees_[i], kIsaNames[i], rays);
             compare_with(grids_[i], "grid " + std::string(kIsaNames[i]), rays);
         }
+        compare_with(trees_.back(), "fast build", rays);
     }
 
     [[nodiscard]] const Geometry& geometry() const { return *geometry_; }
