@@ -19,7 +19,8 @@ void for_primitives(const Geometry& geometry, std::size_t first, std::size_t las
 
 // x, y, z and 0, without reading behind the last vertex.
 inline __m128 load_vertex(const glm::vec3& v) {
-    return _mm_movelh_ps(_mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(&v.x))), _mm_load_ss(&v.z));
+    const __m128 xy = _mm_loadl_pi(_mm_setzero_ps(), reinterpret_cast<const __m64*>(&v.x));
+    return _mm_movelh_ps(xy, _mm_load_ss(&v.z));
 }
 
 // Asks for a triangle's indices, or for the vertices when those are there: in the order of a tree neither lies behind the last.
