@@ -33,6 +33,7 @@ public:
         tree.nodes = top.nodes, tree.leaves = top.leaves, tree.depth = top.depth;
         for (std::size_t first = 0; first < tasks_.size(); first += kBatch) build_some(first, top, tree);
         std::ranges::copy(top.units, tree.units.begin());
+        if (top.leaf_area > 0.0) tree.leaf_extent = static_cast<float>(top.leaf_area_times_side / top.leaf_area);
         return tree;
     }
 
@@ -71,6 +72,8 @@ private:
             size += part.units.size();
             if (size > kUnitMask) throw std::length_error("too many primitives for one BVH");
             top.node(tasks_[first + i].node).child[tasks_[first + i].child] = static_cast<BvhRef>(offsets[i]);
+            top.leaf_area += part.leaf_area;
+            top.leaf_area_times_side += part.leaf_area_times_side;
             tree.nodes += part.nodes;
             tree.leaves += part.leaves;
             tree.depth = std::max(tree.depth, part.depth);
@@ -128,6 +131,7 @@ private:
         }
         for (std::size_t i = 0; i < children.size(); ++i) {
             if (!children[i].leaf) continue;
+            part.count_leaf_extent(children[i].range.bounds);
             const BvhRef leaf = part.append_leaf(geometry_, some[i]);
             part.node(node).child[i] = leaf;
         }
