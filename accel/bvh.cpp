@@ -22,6 +22,7 @@ BvhView BvhTree::view(const Geometry& geometry) const {
     BvhView view;
     if (units.empty()) return view;
     view.units = units.front().bytes;
+    view.bytes = units.size() * sizeof(Unit);
     view.geometry = &geometry;
     for (int i = 0; i < 3; ++i) {
         view.lo[i] = bounds.lo[i];

@@ -85,6 +85,7 @@ private:
 struct Group {
     Float16 o[3], d[3];  // along x, y, z
     Float16 shear_x, shear_y, inverse_z;
+    Float16 inverse_length2;      // of (shear_x, shear_y, 1); conservative tests only
     alignas(64) float t[kGroup];  // distance to beat, at most the largest float
     alignas(64) float u[kGroup], v[kGroup];
     alignas(64) PrimitiveId id[kGroup];
@@ -161,10 +162,12 @@ struct Group {
         }
     }
 
-    template <class Halves>
-    void halves(Halves meet_half, Float16& at, Float16& face) const noexcept {
-        Float8 ts[2], faces[2];
+    // In double, eight lanes at a time; halves without a lane of `lanes` miss.
+    template <class Half>
+    void halves(unsigned lanes, Half meet_half, Float16& at, Float16& face) const noexcept {
+        Float8 ts[2] = {Float8::set(0.0f), Float8::set(0.0f)}, faces[2] = {ts[0], ts[0]};
         for (int h = 0; h < 2; ++h) {
+            if ((lanes >> (8 * h) & 0xffu) == 0) continue;
             const auto part = [h](Float16 x) { return widen(h == 0 ? lower(x) : upper(x)); };
             ts[h] = meet_half(DoubleVector{part(o[0]), part(o[1]), part(o[2])}, DoubleVector{part(d[0]), part(d[1]), part(d[2])},
                               Float8::load(t + 8 * h), faces[h]);
@@ -172,15 +175,29 @@ struct Group {
         at = join(ts[0], ts[1]);
         face = join(faces[0], faces[1]);
     }
+    // Lanes that float cannot rule out. The ray as (shear_x, shear_y, 1) has no length that could overflow; its distance from the
+    // centre, squared, is good to 48 units of 2^-24 of the squared distance to the centre (f good to 1, the direction to 3, its
+    // share of f to 6, the sum to 10 of |f|; squared and doubled), and to a few of the least float.
+    [[nodiscard]] unsigned near_sphere(const SphereBlock& b, int k, const Span& span) const noexcept {
+        const auto from = [&](int axis) { return o[axis] - Float16::set(b.center[axis][k]); };
+        const Float16 fx = from(span.kx), fy = from(span.ky), fz = from(span.kz), r = Float16::set(b.radius[k]);
+        const Float16 shift = ((fx * shear_x + fy * shear_y) + fz) * inverse_length2;
+        const Float16 x = neg_mul_add(shift, shear_x, fx), y = neg_mul_add(shift, shear_y, fy), z = fz - shift;
+        const Float16 distance2 = (x * x + y * y) + z * z, f2 = (fx * fx + fy * fy) + fz * fz;
+        const Float16 margin = (f2 * Float16::set(64.0f * 0x1p-24f) + Float16::set(kLeastT)) + r * r;
+        return (Float16::Mask::from_bits(0xffffu) - lt(margin, distance2)).bits();
+    }
     template <bool any>
-    void meet(const SphereBlock& b, int k, unsigned lanes) noexcept {
+    void meet(const SphereBlock& b, int k, const Span& span, unsigned lanes) noexcept {
+        lanes &= near_sphere(b, k, span);
+        if (lanes == 0) return;
         const auto spread = [](float x) { return Double8::set(static_cast<double>(x)); };
         const DoubleVector c{spread(b.center[0][k]), spread(b.center[1][k]), spread(b.center[2][k])};
         const Double8 r = spread(b.radius[k]);
         Float16 at, none;
         halves(
-            [&](const DoubleVector& from, const DoubleVector& along, Float8 limit, Float8& face) {
-                face = Float8::set(0.0f);
+            lanes,
+            [&](const DoubleVector& from, const DoubleVector& along, Float8 limit, Float8&) {
                 return meet_spheres({from.x - c.x, from.y - c.y, from.z - c.z}, along, r, limit);
             },
             at, none);
@@ -195,9 +212,12 @@ struct Group {
         const DoubleVector lo = corner(b.lo), hi = corner(b.hi);
         const Float16 zero = Float16::set(0.0f);
         Float16 at, face;
-        halves([&](const DoubleVector& from, const DoubleVector& along, Float8 limit,
-                   Float8& f) { return meet_boxes(from, along, lo, hi, limit, f); },
-               at, face);
+        halves(
+            lanes,
+            [&](const DoubleVector& from, const DoubleVector& along, Float8 limit, Float8& f) {
+                return meet_boxes(from, along, lo, hi, limit, f);
+            },
+            at, face);
         take<any>(nearer(lt(zero, at), at, lanes, b.id[k]), at, face, zero, b.id[k]);
     }
 };

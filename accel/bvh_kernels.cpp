@@ -2,19 +2,24 @@
 
 #include "accel/bvh_flight.h"
 #include "accel/bvh_frustum.h"
+#include "accel/bvh_leftovers.h"
 
 // Compiled once per instruction set (CMakeLists.txt says with which flags).
 namespace glint::GLINT_ISA {
 namespace {
 
+RayScalars scalars_of(const BvhView& bvh, const Ray& ray) noexcept {
+    return prepare(&ray.origin.x, &ray.direction.x, bvh.magnitude, ray.t_max);
+}
+
 void closest(const BvhView& bvh, const Ray& ray, Hit& best) noexcept {
-    traverse<false>(bvh, ray, best, [](BvhRef) {});
+    traverse<false>(bvh, ray, scalars_of(bvh, ray), best, [](BvhRef) {});
 }
 
 bool occluded(const BvhView& bvh, const Ray& ray) noexcept {
     Hit best;
     best.t = ray.t_max;
-    traverse<true>(bvh, ray, best, [](BvhRef) {});
+    traverse<true>(bvh, ray, scalars_of(bvh, ray), best, [](BvhRef) {});
     return best.primitive != kNoPrimitive;
 }
 
@@ -96,7 +101,8 @@ bool narrow_beside_leaves(const BvhView& bvh, const Span& s) noexcept {
     return 0.5f * (x < y ? y : x) <= kFrustumWidth * bvh.leaf_extent;
 }
 
-void closest_coherent(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) noexcept {
+// Groups that cannot be gathered go to `leftovers`, or ray by ray where there are none.
+void closest_in_groups(const BvhView& bvh, const RayBatch& rays, HitBatch& hits, Leftovers* leftovers) noexcept {
     constexpr int kRays = kFrustumGroups * kGroup;
     Group groups[kFrustumGroups];
     Span spans[kFrustumGroups], all;
@@ -117,7 +123,9 @@ void closest_coherent(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) 
         for (int i = 0; i < kFrustumGroups; ++i) {
             const int at = first + i * kGroup;
             if (!gathered[i]) {
-                for (int k = at; k < at + kGroup && k < rays.count; ++k) closest_of(bvh, rays, k, hits);
+                const int last = at + kGroup < rays.count ? at + kGroup : rays.count;
+                if (leftovers != nullptr && at < last) leftovers->add(rays, at, last - at);
+                for (int k = at; leftovers == nullptr && k < last; ++k) closest_of(bvh, rays, k, hits);
                 continue;
             }
             if (!together)
@@ -127,15 +135,37 @@ void closest_coherent(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) 
     }
 }
 
-void occluded_coherent(const BvhView& bvh, const RayBatch& rays, bool* result) noexcept {
+void closest_coherent(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) noexcept {
+    Leftovers leftovers;
+    closest_in_groups(bvh, rays, hits, &leftovers);
+    leftovers.hand_out(rays, [&](const RayBatch& batch, const std::uint16_t* index, int count) {
+        HitBatch part;
+        for (int k = 0; k < count; ++k) {
+            part.t[k] = hits.t[index[k]];
+            part.u[k] = hits.u[index[k]];
+            part.v[k] = hits.v[index[k]];
+            part.primitive[k] = hits.primitive[index[k]];
+        }
+        closest_in_groups(bvh, batch, part, nullptr);
+        for (int k = 0; k < count; ++k) {
+            hits.t[index[k]] = part.t[k];
+            hits.u[index[k]] = part.u[k];
+            hits.v[index[k]] = part.v[k];
+            hits.primitive[index[k]] = part.primitive[k];
+        }
+    });
+}
+
+void occluded_in_groups(const BvhView& bvh, const RayBatch& rays, bool* result, Leftovers* leftovers) noexcept {
     for (int first = 0; first < rays.count; first += kGroup) {
         const int count = rays.count - first < kGroup ? rays.count - first : kGroup;
         Group g;
         Span span;
         Float16 padding;
         if (!gather(bvh, rays, first, count, g, span, padding)) {
+            if (leftovers != nullptr) leftovers->add(rays, first, count);
             Ray ray;
-            for (int i = first; i < first + count; ++i) {
+            for (int i = first; leftovers == nullptr && i < first + count; ++i) {
                 if (result[i]) continue;
                 load(rays, i, ray);
                 result[i] = occluded(bvh, ray);
@@ -153,24 +183,83 @@ void occluded_coherent(const BvhView& bvh, const RayBatch& rays, bool* result) n
     }
 }
 
+void occluded_coherent(const BvhView& bvh, const RayBatch& rays, bool* result) noexcept {
+    Leftovers leftovers;
+    occluded_in_groups(bvh, rays, result, &leftovers);
+    leftovers.hand_out(rays, [&](const RayBatch& batch, const std::uint16_t* index, int count) {
+        bool part[kRayBatch];
+        for (int k = 0; k < count; ++k) part[k] = result[index[k]];
+        occluded_in_groups(bvh, batch, part, nullptr);
+        for (int k = 0; k < count; ++k) result[index[k]] = part[k];
+    });
+}
+
+// One ray after the other, made ready sixteen at a time.
+template <class Trace>
+void for_each_prepared(const BvhView& bvh, const RayBatch& rays, Trace trace) noexcept {
+    PreparedRays prepared;
+    for (int i = 0; i < rays.count; ++i) {
+        if (i % kGroup == 0) prepared.prepare(rays, i, bvh.magnitude);
+        if (!prepared.usable(i % kGroup)) continue;
+        Ray ray;
+        load(rays, i, ray);
+        RayScalars scalars;
+        prepared.share(i % kGroup, scalars);
+        trace(i, ray, scalars);
+    }
+}
+
+// Trees that the caches hold leave no waits to overlap.
+constexpr std::size_t kCached = std::size_t{3} << 20;
+
 void closest_batch(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) noexcept {
-    rays.order == RayOrder::divergent ? closest_in_flight(bvh, rays, hits) : closest_coherent(bvh, rays, hits);
+    if (rays.order != RayOrder::divergent) return closest_coherent(bvh, rays, hits);
+    if (bvh.bytes > kCached) return closest_in_flight(bvh, rays, hits);
+    for_each_prepared(bvh, rays, [&](int i, const Ray& ray, const RayScalars& scalars) {
+        Hit best;
+        best.t = hits.t[i];
+        best.primitive = hits.primitive[i];
+        const PrimitiveId before = best.primitive;
+        traverse<false>(bvh, ray, scalars, best, [](BvhRef) {});
+        if (best.primitive == before) return;
+        hits.t[i] = best.t;
+        hits.u[i] = best.u;
+        hits.v[i] = best.v;
+        hits.primitive[i] = best.primitive;
+    });
 }
 
 void occluded_batch(const BvhView& bvh, const RayBatch& rays, bool* result) noexcept {
-    rays.order == RayOrder::divergent ? occluded_in_flight(bvh, rays, result) : occluded_coherent(bvh, rays, result);
+    if (rays.order != RayOrder::divergent) return occluded_coherent(bvh, rays, result);
+    if (bvh.bytes > kCached) return occluded_in_flight(bvh, rays, result);
+    for_each_prepared(bvh, rays, [&](int i, const Ray& ray, const RayScalars& scalars) {
+        if (result[i]) return;
+        Hit best;
+        best.t = ray.t_max;
+        traverse<true>(bvh, ray, scalars, best, [](BvhRef) {});
+        result[i] = best.primitive != kNoPrimitive;
+    });
 }
 
 void count_closest(const BvhView& bvh, const Ray& ray, TraversalCounts& counts) noexcept {
     Hit best;
     best.t = ray.t_max;
     ++counts.rays;
-    traverse<false>(bvh, ray, best, [&](BvhRef ref) {
+    traverse<false>(bvh, ray, scalars_of(bvh, ray), best, [&](BvhRef ref) {
         if ((ref & kLeafBit) == 0) {
             ++counts.nodes;
             return;
         }
         ++counts.leaves;
+        if (static_cast<PrimitiveKind>(leaf_kind(ref)) == PrimitiveKind::triangle) {
+            counts.primitives += static_cast<unsigned>(__builtin_popcount(distinct(bvh.at<TriangleBlock>(ref).id)));
+        } else if (static_cast<PrimitiveKind>(leaf_kind(ref)) == PrimitiveKind::sphere) {
+            counts.primitives += static_cast<unsigned>(__builtin_popcount(distinct(bvh.at<SphereBlock>(ref).id)));
+        } else if (static_cast<PrimitiveKind>(leaf_kind(ref)) == PrimitiveKind::box) {
+            counts.primitives += static_cast<unsigned>(__builtin_popcount(distinct(bvh.at<BoxBlock>(ref).id)));
+        } else {
+            counts.primitives += kBvhWidth;
+        }
     });
 }
 

@@ -47,6 +47,7 @@ struct alignas(64) ConeBlock {
 // What a traversal needs to know.
 struct BvhView {
     const std::byte* units = nullptr;  // the root node at unit 0; null for an empty tree
+    std::size_t bytes = 0;             // of all units
     const Geometry* geometry = nullptr;
     float lo[3] = {}, hi[3] = {};  // bounds of everything
     float magnitude = 0.0f;        // the largest absolute coordinate

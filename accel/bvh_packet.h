@@ -108,15 +108,28 @@ inline void meet_leaf(BvhRef leaf, const BvhView& bvh, const Span& span, const S
         }
         case PrimitiveKind::sphere: {
             const auto& b = bvh.at<SphereBlock>(leaf);
-            for (int k = 0; k < kBvhWidth && alive() != 0; ++k) {
-                if (k == 0 || b.id[k] != b.id[k - 1]) g.meet<any>(b, k, alive());
+            alignas(32) float bounds[6][kBvhWidth];
+            for (int axis = 0; axis < 3; ++axis) {
+                const Float8 c = Float8::load(b.center[axis]), r = Float8::load(b.radius);
+                (c - r).store(bounds[2 * axis]);
+                (c + r).store(bounds[2 * axis + 1]);
+            }
+            Float8 depth;
+            for (unsigned m = test(bounds, z_end, depth) & distinct(b.id); m != 0; m &= m - 1) {
+                g.meet<any>(b, __builtin_ctz(m), span, alive());
             }
             return;
         }
         case PrimitiveKind::box: {
             const auto& b = bvh.at<BoxBlock>(leaf);
-            for (int k = 0; k < kBvhWidth && alive() != 0; ++k) {
-                if (k == 0 || b.id[k] != b.id[k - 1]) g.meet<any>(b, k, alive());
+            alignas(32) float bounds[6][kBvhWidth];
+            for (int axis = 0; axis < 3; ++axis) {
+                Float8::load(b.lo[axis]).store(bounds[2 * axis]);
+                Float8::load(b.hi[axis]).store(bounds[2 * axis + 1]);
+            }
+            Float8 depth;
+            for (unsigned m = test(bounds, z_end, depth) & distinct(b.id); m != 0; m &= m - 1) {
+                g.meet<any>(b, __builtin_ctz(m), alive());
             }
             return;
         }

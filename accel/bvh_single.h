@@ -121,8 +121,7 @@ inline int sort_children(const BvhNode& node, unsigned mask, unsigned shift, std
 
 // Improves `best`. With `any`, ends at the first hit. `visit(ref)` hears of every node and leaf.
 template <bool any, class Visit>
-inline void traverse(const BvhView& bvh, const Ray& ray, Hit& best, Visit visit) noexcept {
-    const RayScalars scalars = prepare(&ray.origin.x, &ray.direction.x, bvh.magnitude, ray.t_max);
+inline void traverse(const BvhView& bvh, const Ray& ray, const RayScalars& scalars, Hit& best, Visit visit) noexcept {
     if (!scalars.usable) return;
     const SlabRay slabs(scalars);
     const LeafRay leaf_ray(ray, scalars, bvh);

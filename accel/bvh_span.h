@@ -90,6 +90,7 @@ inline bool gather(const BvhView& bvh, const RayBatch& rays, int first, int coun
     g.inverse_z = Float16::set(1.0f) / g.d[k];
     g.shear_x = g.d[span.kx] * g.inverse_z;
     g.shear_y = g.d[span.ky] * g.inverse_z;
+    g.inverse_length2 = Float16::set(1.0f) / ((g.shear_x * g.shear_x + g.shear_y * g.shear_y) + Float16::set(1.0f));
     padding = Float16::set(kPadding) * size;
     span.padding = reduce_max(padding);
 
