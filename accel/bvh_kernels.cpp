@@ -79,6 +79,9 @@ void closest_of(const BvhView& bvh, const RayBatch& rays, int i, HitBatch& hits)
     hits.primitive[i] = best.primitive;
 }
 
+// Trees that the caches hold leave no waits to overlap.
+constexpr std::size_t kCached = std::size_t{3} << 20;
+
 // The lanes' distances to beat and what is hit there, from the batch and back.
 void begin(const HitBatch& hits, int count, Group& g) noexcept {
     g.active = (1u << count) - 1u;
@@ -146,7 +149,8 @@ void closest_coherent(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) 
             part.v[k] = hits.v[index[k]];
             part.primitive[k] = hits.primitive[index[k]];
         }
-        closest_in_groups(bvh, batch, part, nullptr);
+        // Closest hits of rays that scatter that much gain nothing from another try together, where there are waits to overlap.
+        bvh.bytes > kCached ? closest_in_flight(bvh, batch, part) : closest_in_groups(bvh, batch, part, nullptr);
         for (int k = 0; k < count; ++k) {
             hits.t[index[k]] = part.t[k];
             hits.u[index[k]] = part.u[k];
@@ -208,9 +212,6 @@ void for_each_prepared(const BvhView& bvh, const RayBatch& rays, Trace trace) no
         trace(i, ray, scalars);
     }
 }
-
-// Trees that the caches hold leave no waits to overlap.
-constexpr std::size_t kCached = std::size_t{3} << 20;
 
 void closest_batch(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) noexcept {
     if (rays.order != RayOrder::divergent) return closest_coherent(bvh, rays, hits);
