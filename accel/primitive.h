@@ -81,8 +81,7 @@ inline Interval slab_interval(const PreparedRay& ray, const Aabb& box) noexcept 
     return interval;
 }
 
-// Whether a hit at t counts. A subnormal t has lost the relative precision that every bound of an error here relies on; an
-// infinite one lies beyond what float can say.
+// Whether a hit at t counts. A subnormal t has lost the precision that every error bound relies on.
 inline bool reportable(float t, float limit) noexcept {
     return t >= std::numeric_limits<float>::min() && t <= limit && t < kInfinity;
 }
@@ -101,8 +100,7 @@ struct TriangleHit {
 // a*b - c*d to 1.5 units in the last place, so its sign is exact (Kahan's algorithm; Jeannerod, Louvet & Muller 2013, "Further
 // analysis of Kahan's algorithm for the accurate computation of 2x2 determinants"). Without a fused instruction libm emulates it.
 inline float difference_of_products(float a, float b, float c, float d) noexcept {
-    const float cd = c * d;
-    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+    return std::fma(a, b, -(c * d)) + std::fma(-c, d, c * d);
 }
 
 // Edge functions from here to the reciprocal are as exact as said above, and what is derived from them is a normal float.
@@ -136,10 +134,9 @@ inline bool intersect_uncertain(const PreparedRay& ray, ShearedTriangle s, float
     if (e.mixed_signs()) return false;
     const double det = e.u + e.v + e.w;
     if (!(std::abs(det) > 0.0)) return false;  // the ray lies in the plane, or NaN
-    // At the size of 1 the arithmetic is the usual one, so that a scene scaled by a power of two keeps its bits.
-    float largest = 0.0f;
-    for (const float x : {s.ax, s.ay, s.bx, s.by, s.cx, s.cy}) largest = std::max(largest, std::abs(x));
-    const int exponent = std::ilogb(largest);
+    // At size 1 the usual arithmetic, so that a scene scaled by a power of two keeps its bits.
+    const auto bigger = [](float a, float b) { return std::abs(a) < std::abs(b); };
+    const int exponent = std::ilogb(std::max({s.ax, s.ay, s.bx, s.by, s.cx, s.cy}, bigger));
     for (float* x : {&s.ax, &s.ay, &s.bx, &s.by, &s.cx, &s.cy}) *x = std::ldexp(*x, -exponent);
     if (!weigh(ray, s, hit)) {
         hit.t = static_cast<float>((e.u * s.az + e.v * s.bz + e.w * s.cz) / (det * ray.direction[ray.kz]));
@@ -149,14 +146,12 @@ inline bool intersect_uncertain(const PreparedRay& ray, ShearedTriangle s, float
     return reportable(hit.t, t_limit);
 }
 
-// Watertight: a ray that meets an edge or vertex shared by triangles hits at least one of them, because the sign of an
-// edge function depends on the edge alone (Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection").
-// Both faces are hit; a ray in the triangle's plane misses. Returns false for a miss.
-// t is a mean of the vertices' distances with weights good to a few roundings, however thin the triangle: so it lies in the
-// interval of the triangle's own padded bounds (accel/README.md has the sum of the errors).
+// Watertight: a ray that meets a shared edge or vertex hits one of its triangles at least, as the sign of an edge function
+// depends on the edge alone (Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection"). Both faces are hit; a ray in
+// the plane misses. t is a mean of the vertices' distances with weights good to a few roundings, so it lies in the interval of
+// the triangle's own padded bounds (accel/README.md has the sum). Returns false for a miss.
 inline bool intersect_triangle(const PreparedRay& ray, const glm::vec3& v0, const glm::vec3& v1, const glm::vec3& v2,
                                float t_limit, TriangleHit& hit) noexcept {
-    // Coordinates are picked from memory by axis; permuting whole vectors would cost more than the test.
     const float ox = ray.origin[ray.kx], oy = ray.origin[ray.ky], oz = ray.origin[ray.kz];
     const float az = v0[ray.kz] - oz, bz = v1[ray.kz] - oz, cz = v2[ray.kz] - oz;
     const float ax = (v0[ray.kx] - ox) - ray.shear_x * az, ay = (v0[ray.ky] - oy) - ray.shear_y * az;
@@ -167,8 +162,7 @@ inline bool intersect_triangle(const PreparedRay& ray, const glm::vec3& v0, cons
     const EdgeFunctions<float> rough{cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
     if (rough.mixed_signs()) return false;
     const ShearedTriangle s{ax, ay, az, bx, by, bz, cx, cy, cz};
-    if (!weigh(ray, s, hit)) return intersect_uncertain(ray, s, t_limit, hit);
-    return reportable(hit.t, t_limit);
+    return weigh(ray, s, hit) ? reportable(hit.t, t_limit) : intersect_uncertain(ray, s, t_limit, hit);
 }
 
 // The first root of a pair that is reportable once rounded to float; 0 when neither is.
@@ -197,8 +191,7 @@ inline float intersect_sphere(const PreparedRay& ray, const Sphere& sphere, floa
     return first_root(std::min(t0, t1), std::max(t0, t1), t_limit);
 }
 
-// Slabs in double (Kay & Kajiya 1986); a zero direction constrains by position alone, the boundary counts as inside.
-// face: 0..5 = -x +x -y +y -z +z. Returns t, or 0 for a miss.
+// Slabs in double (Kay & Kajiya 1986); the boundary counts as inside. face: 0..5 = -x +x -y +y -z +z. t, or 0 for a miss.
 inline float intersect_box(const PreparedRay& ray, const Box& box, float t_limit, int& face) noexcept {
     double near = -static_cast<double>(kInfinity), far = static_cast<double>(kInfinity);
     int near_face = 0, far_face = 0;
@@ -219,8 +212,7 @@ inline float intersect_box(const PreparedRay& ray, const Box& box, float t_limit
     return t;
 }
 
-// Lateral surface of a truncated cone or cylinder, in double, solved from the ray's point nearest to the base so that
-// distance does not cancel. Returns t, or 0 for a miss.
+// Lateral surface of a truncated cone, in double, from the ray's point nearest to the base, so that distance does not cancel.
 inline float intersect_cone(const PreparedRay& ray, const Cone& cone, float t_limit) noexcept {
     const glm::dvec3 d(ray.direction), base(cone.base);
     const glm::dvec3 axis = glm::dvec3(cone.apex) - base;
