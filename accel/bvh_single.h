@@ -16,41 +16,8 @@ struct TraversalStack {
     float near[kStackSize];
 };
 
-// Pushes all but the nearest of the (two or more) children of `mask`, far to near, and returns that one. It is looked up
-// apart, because what was just compressed and stored would come back from the stack too late.
-inline BvhRef push_children(TraversalStack& stack, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
-#if defined(__AVX512VL__)
-    const __m256i order =
-        _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(shift));
-    const __m256 inf = _mm256_set1_ps(HUGE_VALF);
-    const __m256 sorted = _mm256_permutexvar_ps(order, _mm256_mask_blend_ps(static_cast<__mmask8>(mask), inf, near.v));
-    const __m256i refs = _mm256_permutexvar_epi32(order, _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child)));
-    const __mmask8 present = _mm256_cmp_ps_mask(sorted, inf, _CMP_LT_OQ);
-    const int last = 31 - __builtin_clz(static_cast<unsigned>(present));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + stack.top), _mm256_maskz_compress_epi32(present, refs));
-    _mm256_storeu_ps(stack.near + stack.top, _mm256_maskz_compress_ps(present, sorted));
-    stack.top += __builtin_popcount(mask) - 1;
-    return node.child[node.order[last] >> shift & 7u];
-#else
-    alignas(32) float distance[kBvhWidth];
-    near.store(distance);
-    BvhRef nearest = 0;
-    int top = stack.top;
-    for (int i = 0; i < kBvhWidth; ++i) {
-        const unsigned k = node.order[i] >> shift & 7u;
-        const bool entered = (mask >> k & 1u) != 0;
-        stack.ref[top] = node.child[k];
-        stack.near[top] = distance[k];
-        nearest = entered ? node.child[k] : nearest;
-        top += entered ? 1 : 0;
-    }
-    stack.top = top - 1;
-    return nearest;
-#endif
-}
-
-// Pushes all children of `mask`, none or many, far to near.
-inline void push_all(TraversalStack& stack, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
+// Pushes all children of `mask`, none or many, far to near, and returns the place in the node's order of the nearest one.
+inline int push_all(TraversalStack& stack, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
 #if defined(__AVX512VL__)
     const __m256i order =
         _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(shift));
@@ -61,17 +28,30 @@ inline void push_all(TraversalStack& stack, const BvhNode& node, unsigned mask, 
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + stack.top), _mm256_maskz_compress_epi32(present, refs));
     _mm256_storeu_ps(stack.near + stack.top, _mm256_maskz_compress_ps(present, sorted));
     stack.top += __builtin_popcount(mask);
+    return 31 - __builtin_clz(static_cast<unsigned>(present) | 1u);
 #else
     alignas(32) float distance[kBvhWidth];
     near.store(distance);
+    int nearest = 0;
     for (int i = 0; i < kBvhWidth; ++i) {
         const unsigned k = node.order[i] >> shift & 7u;
+        const bool entered = (mask >> k & 1u) != 0;
         stack.ref[stack.top] = node.child[k];
         stack.near[stack.top] = distance[k];
-        stack.top += static_cast<int>(mask >> k & 1u);
+        stack.top += entered ? 1 : 0;
+        nearest = entered ? i : nearest;
     }
+    return nearest;
 #endif
 }
+// Pushes all but the nearest of the children of `mask` (at least one) and returns that one. It is looked up in the node, because
+// what was just compressed and stored would come back from the stack too late.
+inline BvhRef push_children(TraversalStack& stack, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
+    const int nearest = push_all(stack, node, mask, shift, near);
+    --stack.top;
+    return node.child[node.order[nearest] >> shift & 7u];
+}
+
 inline void push_all_unsorted(TraversalStack& stack, const BvhNode& node, unsigned mask) noexcept {
 #if defined(__AVX512VL__)
     const __m256i refs = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
@@ -85,17 +65,8 @@ inline void push_all_unsorted(TraversalStack& stack, const BvhNode& node, unsign
 
 // The same in any order and without distances.
 inline BvhRef push_unsorted(TraversalStack& stack, const BvhNode& node, unsigned mask) noexcept {
-    const BvhRef first = node.child[__builtin_ctz(mask)];
-    mask &= mask - 1;
-#if defined(__AVX512VL__)
-    const __m256i refs = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + stack.top),
-                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), refs));
-    stack.top += __builtin_popcount(mask);
-#else
-    for (; mask != 0; mask &= mask - 1) stack.ref[stack.top++] = node.child[__builtin_ctz(mask)];
-#endif
-    return first;
+    push_all_unsorted(stack, node, mask & (mask - 1));
+    return node.child[__builtin_ctz(mask)];
 }
 
 // Writes the children of `mask` far to near and returns how many there are.
