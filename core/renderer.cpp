@@ -4,7 +4,6 @@
 #include <cassert>
 #include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <mutex>
 #include <new>
 #include <stdexcept>
@@ -14,6 +13,7 @@
 #include "core/render_plan.h"
 #include "core/threads.h"
 #include "core/tile_kernels.h"
+#include "core/tile_queue.h"
 
 namespace glint {
 namespace {
@@ -31,11 +31,6 @@ struct Order {
     std::uint64_t generation = 0;
 };
 
-struct Task {
-    std::size_t tile = 0;
-    bool preview = false;
-};
-
 }  // namespace
 
 struct Renderer::State {
@@ -46,7 +41,7 @@ struct Renderer::State {
     mutable std::condition_variable work, change;
     std::shared_ptr<const Order> order;
     std::shared_ptr<Framebuffer> framebuffer;
-    std::deque<Task> queue;
+    TileQueue queue;
     std::uint64_t queue_generation = 0;
     std::size_t previews_left = 0, tiles_left = 0;
     bool paused = false, stopping = false;
@@ -79,12 +74,8 @@ struct Renderer::State {
         const Frame& f = order->frame;
         const TileRect area{f.x0, f.y0, f.x1, f.y1};
         if (framebuffer == nullptr || framebuffer->area() != area) framebuffer = std::make_shared<Framebuffer>(area, preview);
-        queue.clear();
         const std::size_t n = framebuffer->tile_count();
-        if (preview) {
-            for (std::size_t i = 0; i < n; ++i) queue.push_back({i, true});
-        }
-        for (std::size_t i = 0; i < n; ++i) queue.push_back({i, false});
+        queue.deal(n, preview);
         previews_left = preview ? n : 0;
         tiles_left = n;
         queue_generation = order->generation;
@@ -132,10 +123,9 @@ void Renderer::State::work_loop(std::uint64_t& current) {
             deal();
             work.notify_all();
         }
-        const Task task = queue.front();
-        queue.pop_front();
+        TileTask task = queue.take();
         const std::shared_ptr<const Order> o = order;
-        const int first = framebuffer->samples(task.tile, o->generation);
+        const int first = task.samples;
         const int last = std::min(o->frame.spp, first + std::clamp(first, 1, kMaxBatch));
         const TileRect rect = framebuffer->tile_rect(task.tile);
         if (!task.preview) framebuffer->copy_out(task.tile, o->generation, sums);
@@ -156,7 +146,8 @@ void Renderer::State::work_loop(std::uint64_t& current) {
         counts += workspace.counts;
         framebuffer->write_back(task.tile, o->generation, sums, last);
         if (last < o->frame.spp) {
-            queue.push_back(task);
+            task.samples = last;
+            queue.give_back(task);
             if (queue.size() == 1) work.notify_one();
         } else if (--tiles_left == 0) {
             run_clock(false);

@@ -169,8 +169,9 @@ TEST_P(SameBits, OfACompletePassInTheMiddleOfARender) {
     renderer.restart(frame);
     Image image;
     int pass = 0;
-    for (int i = 0; i < 10000 && pass < 3; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    // The renderer has a million samples to go, so only a pass that never completes runs into the limit.
+    for (int i = 0; i < 30000 && pass < 3; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
         pass = renderer.resolve_pass(image);
     }
     ASSERT_GE(pass, 3);
