@@ -29,6 +29,7 @@ BvhView BvhTree::view(const Geometry& geometry) const {
         view.hi[i] = bounds.hi[i];
     }
     view.magnitude = bounds.magnitude();
+    view.only_triangles = geometry.bounded_count() == geometry.triangles.size();
     view.leaf_extent = leaf_extent;
     return view;
 }

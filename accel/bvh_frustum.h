@@ -14,13 +14,19 @@ constexpr float kFrustumWidth = 2.5f;
 
 inline void traverse_frustum(const BvhView& bvh, Group* groups, const Span* spans, const Span& all, unsigned octant) noexcept {
     const SpanTest test(all);
-    const SpanTest tests[kFrustumGroups] = {SpanTest(spans[0]), SpanTest(spans[1]), SpanTest(spans[2]), SpanTest(spans[3])};
-    float ends[kFrustumGroups];
-    const auto update = [&](int i) { ends[i] = end_of(groups[i], spans[i]); };
-    for (int i = 0; i < kFrustumGroups; ++i) update(i);
+    const float x = all.shears.middle_x(), y = all.shears.middle_y(), spread = all.shears.spread();
+    EdgeTest tests[kFrustumGroups];
+    for (int i = 0; i < kFrustumGroups; ++i) tests[i] = EdgeTest(spans[i].shears, x, y, all.forward);
+    // Depths count from the common origin here, but for those of nodes.
+    float origin[3];
+    for (int axis = 0; axis < 3; ++axis) origin[axis] = groups[0].batch->origin[axis][groups[0].first];
+    const float start = all.depth(origin[all.kz]);
+    // Depth beyond which no ray looks.
     const auto farthest = [&] {
-        const float a = ends[0] < ends[1] ? ends[1] : ends[0], b = ends[2] < ends[3] ? ends[3] : ends[2];
-        return a < b ? b : a;
+        Float16 depth = Float16::load(groups[0].t) * abs(groups[0].d[all.kz]);
+        for (int i = 1; i < kFrustumGroups; ++i) depth = max(depth, Float16::load(groups[i].t) * abs(groups[i].d[all.kz]));
+        const float end = reduce_max(depth);
+        return end + 2.0f * all.padding + 0x1p-20f * end;
     };
     float end = farthest();
     TraversalStack stack;
@@ -29,7 +35,7 @@ inline void traverse_frustum(const BvhView& bvh, Group* groups, const Span* span
         if ((at & kLeafBit) == 0) {
             const BvhNode& node = bvh.at<BvhNode>(at);
             Float8 depth;
-            const unsigned mask = test(node.bounds, Float8::set(end), depth);
+            const unsigned mask = test(node.bounds, Float8::set(start + end), depth);
             if (mask != 0) {
                 at = (mask & (mask - 1)) == 0 ? node.child[__builtin_ctz(mask)]
                                               : push_children(stack, node, mask, 3 * octant, depth);
@@ -37,29 +43,30 @@ inline void traverse_frustum(const BvhView& bvh, Group* groups, const Span* span
             }
         } else if (static_cast<PrimitiveKind>(leaf_kind(at)) == PrimitiveKind::triangle) {
             const auto& b = bvh.at<TriangleBlock>(at);
-            const Corners corners(b, groups[0].ray(0));
-            const unsigned once = distinct(b.id);
-            for (int i = 0; i < kFrustumGroups; ++i) {
-                unsigned m = tests[i].triangles(b, Float8::set(ends[i])) & once;
-                if (m == 0) continue;
+            const Corners corners(b, origin);
+            const LeafEdges edges(corners, all, x, y, spread);
+            const Float8 before = Float8::set(end);
+            unsigned m = 0;
+            for (int i = 0; i < kFrustumGroups; ++i) m |= edges(tests[i], before) << (kBvhWidth * i);
+            m &= 0x01010101u * distinct(b.id);
+            if (m != 0) {
+                // One loop over groups and triangles, so that one branch only is hard to foresee.
                 for (; m != 0; m &= m - 1) {
-                    const int k = __builtin_ctz(m);
-                    groups[i].meet<false, true>(corners.v, b.id[k], k, spans[i], groups[i].active);
+                    const int bit = __builtin_ctz(m), i = bit / kBvhWidth, k = bit % kBvhWidth;
+                    groups[i].meet<false, true>(corners.v, b.id[k], k, all, groups[i].active);
                 }
-                if (groups[i].found != 0) update(i);
+                end = farthest();
             }
-            end = farthest();
         } else {
             for (int i = 0; i < kFrustumGroups; ++i) {
-                meet_leaf<false>(at, bvh, spans[i], tests[i], Float8::set(ends[i]), groups[i].active, groups[i]);
-                if (groups[i].found != 0) update(i);
+                meet_leaf<false>(at, bvh, spans[i], SpanTest(spans[i]), Float8::set(start + end), groups[i].active, groups[i]);
             }
             end = farthest();
         }
         do {
             if (stack.top == 0) return;
             --stack.top;
-        } while (stack.near[stack.top] > end);
+        } while (stack.near[stack.top] > start + end);
         at = stack.ref[stack.top];
     }
 }

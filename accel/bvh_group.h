@@ -17,12 +17,31 @@ struct SpanPlane {
 struct Extent {
     float lo_a, hi_a, lo_b, hi_b;
 };
+// Least and largest shears of a group's rays.
+struct ShearRange {
+    float lo_x, hi_x, lo_y, hi_y;
+
+    void grow(const ShearRange& r) noexcept {
+        lo_x = r.lo_x < lo_x ? r.lo_x : lo_x;
+        hi_x = r.hi_x > hi_x ? r.hi_x : hi_x;
+        lo_y = r.lo_y < lo_y ? r.lo_y : lo_y;
+        hi_y = r.hi_y > hi_y ? r.hi_y : hi_y;
+    }
+    [[nodiscard]] float middle_x() const noexcept { return 0.5f * (lo_x + hi_x); }
+    [[nodiscard]] float middle_y() const noexcept { return 0.5f * (lo_y + hi_y); }
+    // The largest shear relative to the middle.
+    [[nodiscard]] float spread() const noexcept {
+        const float x = hi_x - lo_x, y = hi_y - lo_y;
+        return 0.5000002f * (x < y ? y : x);
+    }
+};
 struct Span {
     int kx, ky, kz;
     bool forward;  // whether the rays go up the axis
     bool common;   // whether they start at one point
     float za, zb;  // the two depths, as coordinates
     Extent x, y;
+    ShearRange shears;  // where common
     SpanPlane lo_x, hi_x, lo_y, hi_y;
     float z_start;  // depth (z, or -z where not forward) before which no ray starts
     float padding;
@@ -42,6 +61,7 @@ public:
                  rows_[2] + (s.lo_y.slope <= 0.0f)},
           near_row_(rows_[2] + !s.forward),
           far_row_(rows_[2] + s.forward),
+          length_{length(s.hi_x), length(s.lo_x), length(s.hi_y), length(s.lo_y)},
           sign_(Float8::set(s.forward ? 1.0f : -1.0f)),
           start_(Float8::set(s.z_start)) {}
 
@@ -54,6 +74,17 @@ public:
         const auto y = le(neg_mul_add(slope_[2], row(z_row_[2]), row(rows_[1])), offset_[2]) &
                        le(offset_[3], neg_mul_add(slope_[3], row(z_row_[3]), row(rows_[1] + 1)));
         return (x & y & le(depth, z_end) & le(start_, row(far_row_) * sign_)).bits();
+    }
+    // The same for eight spheres, against the planes themselves.
+    [[nodiscard]] unsigned spheres(const SphereBlock& b, Float8 z_end) const noexcept {
+        const auto row = [&b](int i) { return Float8::load(b.center[i / 2]); };
+        const Float8 x = row(rows_[0]), y = row(rows_[1]), z = row(rows_[2]), r = Float8::load(b.radius), depth = z * sign_;
+        const Float8 minus_r = Float8::set(0.0f) - r;
+        const auto least = [&](int i, Float8 p) { return neg_mul_add(length_[i], r, neg_mul_add(slope_[i], z, p)); };
+        const auto most = [&](int i, Float8 p) { return neg_mul_add(length_[i], minus_r, neg_mul_add(slope_[i], z, p)); };
+        return (le(least(0, x), offset_[0]) & le(offset_[1], most(1, x)) & le(least(2, y), offset_[2]) &
+                le(offset_[3], most(3, y)) & le(depth - r, z_end) & le(start_, depth + r))
+            .bits();
     }
     // The same for eight triangles, all of whose corners must lie beyond one plane to be rejected.
     [[nodiscard]] unsigned triangles(const TriangleBlock& b, Float8 z_end) const noexcept {
@@ -74,10 +105,14 @@ public:
     }
 
 private:
+    // At least the length of (slope, 1): how far along the axis a unit perpendicular to the plane reaches.
+    static Float8 length(const SpanPlane& p) noexcept { return Float8::set(1.000001f * (1.0f + 0.5f * p.slope * p.slope)); }
+
     int rows_[3];
     Float8 slope_[4], offset_[4];
     int z_row_[4];
     int near_row_, far_row_;
+    Float8 length_[4];
     Float8 sign_, start_;
 };
 
@@ -102,10 +137,12 @@ struct Group {
                 batch->t_max[i]};
     }
     // Lanes that hit at `t` within the bounds and before what they have; ties go to the lower id.
+    template <bool any>
     [[nodiscard]] unsigned nearer(Float16::Mask hit, Float16 at, unsigned lanes, PrimitiveId primitive) const noexcept {
         const Float16 best = Float16::load(t);
         const auto within = hit & le(Float16::set(kLeastT), at) & le(at, best);
         unsigned bits = within.bits() & lanes;
+        if (any) return bits;
         for (unsigned tie = bits & ~lt(at, best).bits(); __builtin_expect(tie != 0, 0); tie &= tie - 1) {
             const int lane = __builtin_ctz(tie);
             if (!(primitive < id[lane])) bits &= ~(1u << lane);
@@ -127,13 +164,13 @@ struct Group {
         store_where(mask, primitive, id);
         found |= lanes;
     }
-    // One primitive and one lane by the scalar code.
-    template <bool any>
-    void decide_alone(int lane, PrimitiveId primitive) noexcept {
+    // One lane alone: `test(ray, best)` improves what it has.
+    template <bool any, class Test>
+    void decide_alone(int lane, Test test) noexcept {
         Hit best;
         best.t = t[lane];
         best.primitive = id[lane];
-        intersect_alone(ray(lane), bvh->magnitude, *bvh->geometry, primitive, best);
+        test(ray(lane), best);
         if (best.primitive == id[lane]) return;
         t[lane] = best.t;
         u[lane] = best.u;
@@ -141,6 +178,19 @@ struct Group {
         id[lane] = best.primitive;
         found |= 1u << lane;
         if (any) active &= ~(1u << lane);
+    }
+    [[nodiscard]] LeafRay leaf_ray(int lane, const Ray& r, const Span& span) const noexcept {
+        RayScalars s;
+        s.kx = span.kx, s.ky = span.ky, s.kz = span.kz;
+        s.o[0] = (&r.origin.x)[span.kx], s.o[1] = (&r.origin.x)[span.ky], s.o[2] = (&r.origin.x)[span.kz];
+        s.shear_x = lane_of(shear_x, lane), s.shear_y = lane_of(shear_y, lane), s.inverse_z = lane_of(inverse_z, lane);
+        return {r, s, *bvh};
+    }
+    // By the scalar code.
+    template <bool any>
+    void decide_alone(int lane, PrimitiveId primitive) noexcept {
+        decide_alone<any>(lane,
+                          [&](const Ray& r, Hit& best) { intersect_alone(r, bvh->magnitude, *bvh->geometry, primitive, best); });
     }
 
     // `corners`: of a block, relative to the origin where `common`.
@@ -156,7 +206,7 @@ struct Group {
         s.cx = corner(2, span.kx), s.cy = corner(2, span.ky), s.cz = corner(2, span.kz);
         s.shear(shear_x, shear_y);
         const TriangleLanes<Float16> r = meet_triangles(s, inverse_z);
-        take<any>(nearer(r.hit, r.t, lanes, primitive), r.t, r.u, r.v, primitive);
+        take<any>(nearer<any>(r.hit, r.t, lanes, primitive), r.t, r.u, r.v, primitive);
         for (unsigned unsure = r.unsure.bits() & lanes; __builtin_expect(unsure != 0, !kFused); unsure &= unsure - 1) {
             decide_alone<any>(__builtin_ctz(unsure), primitive);
         }
@@ -201,7 +251,7 @@ struct Group {
                 return meet_spheres({from.x - c.x, from.y - c.y, from.z - c.z}, along, r, limit);
             },
             at, none);
-        take<any>(nearer(lt(none, at), at, lanes, b.id[k]), at, none, none, b.id[k]);
+        take<any>(nearer<any>(lt(none, at), at, lanes, b.id[k]), at, none, none, b.id[k]);
     }
     template <bool any>
     void meet(const BoxBlock& b, int k, unsigned lanes) noexcept {
@@ -218,7 +268,7 @@ struct Group {
                 return meet_boxes(from, along, lo, hi, limit, f);
             },
             at, face);
-        take<any>(nearer(lt(zero, at), at, lanes, b.id[k]), at, face, zero, b.id[k]);
+        take<any>(nearer<any>(lt(zero, at), at, lanes, b.id[k]), at, face, zero, b.id[k]);
     }
 };
 

@@ -122,6 +122,11 @@ void closest_in_groups(const BvhView& bvh, const RayBatch& rays, HitBatch& hits,
             for (int axis = 0; axis < 3; ++axis) together = together && rays.origin[axis][at] == rays.origin[axis][first];
         }
         together = together && join(spans, kFrustumGroups, all) && narrow_beside_leaves(bvh, all);
+        // The parts' own planes serve primitives without edges.
+        for (int i = 0; i < kFrustumGroups; ++i) {
+            if (gathered[i] && !(together && bvh.only_triangles)) gathered[i] = bound_by_planes(spans[i]);
+            together = together && gathered[i];
+        }
         if (together) traverse_frustum(bvh, groups, spans, all, octant_of(rays, first));
         for (int i = 0; i < kFrustumGroups; ++i) {
             const int at = first + i * kGroup;
@@ -166,7 +171,7 @@ void occluded_in_groups(const BvhView& bvh, const RayBatch& rays, bool* result, 
         Group g;
         Span span;
         Float16 padding;
-        if (!gather(bvh, rays, first, count, g, span, padding)) {
+        if (!gather(bvh, rays, first, count, g, span, padding) || !bound_by_planes(span)) {
             if (leftovers != nullptr) leftovers->add(rays, first, count);
             Ray ray;
             for (int i = first; leftovers == nullptr && i < first + count; ++i) {
@@ -176,12 +181,11 @@ void occluded_in_groups(const BvhView& bvh, const RayBatch& rays, bool* result, 
             }
             continue;
         }
-        for (int l = 0; l < kGroup; ++l) {
-            const int i = first + (l < count ? l : 0);
-            g.t[l] = rays.t_max[i] < kLargestT ? rays.t_max[i] : kLargestT;
-            g.id[l] = kNoPrimitive;
-            if (l < count && !result[i]) g.active |= 1u << l;
-        }
+        const auto lanes = Float16::Mask::from_bits((1u << count) - 1u);
+        min(select(lanes, Float16::load(rays.t_max + first), Float16::set(rays.t_max[first])), Float16::set(kLargestT))
+            .store(g.t);
+        store_where(Float16::Mask::from_bits(0xffffu), kNoPrimitive, g.id);
+        for (int l = 0; l < count; ++l) g.active |= (result[first + l] ? 0u : 1u) << l;
         if (g.active != 0) traverse_group<true>(bvh, g, span, GroupSlabs(g, padding), octant_of(rays, first));
         for (unsigned m = g.found; m != 0; m &= m - 1) result[first + __builtin_ctz(m)] = true;
     }

@@ -50,8 +50,9 @@ struct BvhView {
     std::size_t bytes = 0;             // of all units
     const Geometry* geometry = nullptr;
     float lo[3] = {}, hi[3] = {};  // bounds of everything
-    float magnitude = 0.0f;        // the largest absolute coordinate
-    float leaf_extent = 0.0f;      // mean of the leaves' widest sides, weighted by area: what a ray is likely to meet
+    bool only_triangles = false;
+    float magnitude = 0.0f;    // the largest absolute coordinate
+    float leaf_extent = 0.0f;  // mean of the leaves' widest sides, weighted by area: what a ray is likely to meet
 
     template <class T>
     [[nodiscard, gnu::always_inline]] const T& at(BvhRef r) const {

@@ -6,7 +6,7 @@
 
 #include <type_traits>
 
-#include "accel/bvh_group.h"
+#include "accel/bvh_edges.h"
 #include "accel/bvh_single.h"
 
 namespace glint::GLINT_ISA {
@@ -66,16 +66,6 @@ inline float end_of(const Group& g, const Span& span) noexcept {
     return reduce_max(depth) + span.padding + 0x1p-20f * std::fabs(reduce_max(depth));
 }
 
-// The corners of a leaf's triangles as seen from the common origin of a group.
-struct Corners {
-    alignas(32) float v[9][kBvhWidth];
-
-    Corners(const TriangleBlock& b, const Ray& ray) noexcept {
-        const float* o = &ray.origin.x;
-        for (int i = 0; i < 9; ++i) (Float8::load(b.v[i]) - Float8::set(o[i % 3])).store(v[i]);
-    }
-};
-
 // The lanes against triangles `m` of a block.
 template <bool any>
 inline void meet_triangles(const TriangleBlock& b, unsigned m, const Span& span, unsigned lanes, Group& g) noexcept {
@@ -87,8 +77,18 @@ inline void meet_triangles(const TriangleBlock& b, unsigned m, const Span& span,
     };
     m &= distinct(b.id);
     if (m == 0) return;
+    // Eight triangles cost a ray what eight rays cost a triangle.
+    if (any) lanes &= g.active;
+    if (__builtin_popcount(lanes) <= __builtin_popcount(m)) {
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const int lane = __builtin_ctz(lanes);
+            g.decide_alone<any>(lane, [&](const Ray& ray, Hit& best) { meet_leaf<any>(b, g.leaf_ray(lane, ray, span), best); });
+        }
+        return;
+    }
     if (span.common) {
-        const Corners corners(b, g.ray(0));
+        const float* o[3] = {g.batch->origin[0], g.batch->origin[1], g.batch->origin[2]};
+        const Corners corners(b, {o[0][g.first], o[1][g.first], o[2][g.first]});
         meet_all(std::true_type(), corners.v);
     } else {
         meet_all(std::false_type(), b.v);
@@ -108,16 +108,15 @@ inline void meet_leaf(BvhRef leaf, const BvhView& bvh, const Span& span, const S
         }
         case PrimitiveKind::sphere: {
             const auto& b = bvh.at<SphereBlock>(leaf);
-            alignas(32) float bounds[6][kBvhWidth];
-            for (int axis = 0; axis < 3; ++axis) {
-                const Float8 c = Float8::load(b.center[axis]), r = Float8::load(b.radius);
-                (c - r).store(bounds[2 * axis]);
-                (c + r).store(bounds[2 * axis + 1]);
+            const unsigned spheres = test.spheres(b, z_end) & distinct(b.id);
+            // Eight spheres cost a ray what eight rays cost a sphere.
+            if (__builtin_popcount(alive()) <= __builtin_popcount(spheres)) {
+                for (unsigned l = alive(); l != 0; l &= l - 1) {
+                    g.decide_alone<any>(__builtin_ctz(l), [&](const Ray& ray, Hit& best) { meet_spheres<any>(b, ray, best); });
+                }
+                return;
             }
-            Float8 depth;
-            for (unsigned m = test(bounds, z_end, depth) & distinct(b.id); m != 0; m &= m - 1) {
-                g.meet<any>(b, __builtin_ctz(m), span, alive());
-            }
+            for (unsigned m = spheres; m != 0; m &= m - 1) g.meet<any>(b, __builtin_ctz(m), span, alive());
             return;
         }
         case PrimitiveKind::box: {

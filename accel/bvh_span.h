@@ -21,10 +21,10 @@ inline bool share_axis(const Group& g, int k, bool forward, Float16 largest_orig
 
 // The planes through the rays' extreme positions at two depths; between these no ray leaves them, because it runs straight.
 inline bool bound_by_planes(const Extent& e, float za, float zb, float padding, SpanPlane& lo, SpanPlane& hi) noexcept {
-    const float size = std::fabs(za) < std::fabs(zb) ? std::fabs(zb) : std::fabs(za);
+    const float size = std::fabs(za) < std::fabs(zb) ? std::fabs(zb) : std::fabs(za), scale = 1.0f / (zb - za);
     const auto plane = [&](float a, float b, float side) {
         SpanPlane p;
-        p.slope = (b - a) / (zb - za);
+        p.slope = (b - a) * scale;
         p.offset = (a - p.slope * za) + side * (padding + kPadding * std::fabs(p.slope) * size);
         return p;
     };
@@ -56,6 +56,7 @@ inline bool join(const Span* parts, int count, Span& all) noexcept {
         grow(all.y, p.y);
         sum_x += width(p.x);
         sum_y += width(p.y);
+        all.shears.grow(p.shears);
         all.z_start = p.z_start < all.z_start ? p.z_start : all.z_start;
         all.padding = p.padding > all.padding ? p.padding : all.padding;
     }
@@ -63,7 +64,8 @@ inline bool join(const Span* parts, int count, Span& all) noexcept {
     return width(all.x) <= 1.5f * sum_x && width(all.y) <= 1.5f * sum_y && bound_by_planes(all);
 }
 
-// Rays first to first + count - 1 (1 to 16) with limits `t_max`; lanes beyond the count repeat the first.
+// Rays first to first + count - 1 (1 to 16) with limits `t_max`; lanes beyond the count repeat the first. Leaves the span's
+// planes to bound_by_planes().
 inline bool gather(const BvhView& bvh, const RayBatch& rays, int first, int count, Group& g, Span& span,
                    Float16& padding) noexcept {
     const auto lanes = Float16::Mask::from_bits((1u << count) - 1u);
@@ -90,28 +92,43 @@ inline bool gather(const BvhView& bvh, const RayBatch& rays, int first, int coun
     g.inverse_z = Float16::set(1.0f) / g.d[k];
     g.shear_x = g.d[span.kx] * g.inverse_z;
     g.shear_y = g.d[span.ky] * g.inverse_z;
-    g.inverse_length2 = Float16::set(1.0f) / ((g.shear_x * g.shear_x + g.shear_y * g.shear_y) + Float16::set(1.0f));
+    if (!bvh.only_triangles)
+        g.inverse_length2 = Float16::set(1.0f) / ((g.shear_x * g.shear_x + g.shear_y * g.shear_y) + Float16::set(1.0f));
     padding = Float16::set(kPadding) * size;
-    span.padding = reduce_max(padding);
-
-    const Float16 depth = forward ? g.o[k] : Float16::set(0.0f) - g.o[k];
-    span.z_start = reduce_min(depth) - span.padding;
+    const auto same = [&](Float16 o, float first_one) { return le(o, Float16::set(first_one)) & le(Float16::set(first_one), o); };
+    float start[3];
+    for (int i = 0; i < 3; ++i) start[i] = rays.origin[i][first];
+    span.common = (same(g.o[0], start[0]) & same(g.o[1], start[1]) & same(g.o[2], start[2])).bits() == 0xffffu;
+    span.padding = span.common ? first_lane(padding) : reduce_max(padding);
+    const float depth = span.common ? span.depth(start[k]) : forward ? reduce_min(g.o[k]) : -reduce_max(g.o[k]);
+    span.z_start = depth - span.padding;
     const float scene_near = (forward ? bvh.lo[k] : -bvh.hi[k]) - span.padding;
     const float scene_far = (forward ? bvh.hi[k] : -bvh.lo[k]) + span.padding;
     const float near = span.z_start < scene_near ? scene_near : span.z_start;
     if (!(near < scene_far)) return false;
     span.za = span.depth(near);
     span.zb = span.depth(scene_far);
-    span.common = true;
-    for (const Float16& o : g.o) span.common = span.common && reduce_min(o) == reduce_max(o);
     const auto extent = [&](int axis, Float16 shear) {
         const auto at = [&](float depth_z) { return g.o[axis] + shear * (Float16::set(depth_z) - g.o[k]); };
         const Float16 a = at(span.za), b = at(span.zb);
         return Extent{reduce_min(a), reduce_max(a), reduce_min(b), reduce_max(b)};
     };
-    span.x = extent(span.kx, g.shear_x);
-    span.y = extent(span.ky, g.shear_y);
-    return bound_by_planes(span);
+    // From one point the extreme shears give the extreme positions, the same to the bit: each operation rounds monotonically.
+    const auto extent_of = [&](int axis, float lo, float hi) {
+        const float to_a = span.za - start[k], to_b = span.zb - start[k];
+        const float a0 = start[axis] + lo * to_a, a1 = start[axis] + hi * to_a, b0 = start[axis] + lo * to_b,
+                    b1 = start[axis] + hi * to_b;
+        return Extent{a0 < a1 ? a0 : a1, a0 < a1 ? a1 : a0, b0 < b1 ? b0 : b1, b0 < b1 ? b1 : b0};
+    };
+    if (span.common) {
+        span.shears = {reduce_min(g.shear_x), reduce_max(g.shear_x), reduce_min(g.shear_y), reduce_max(g.shear_y)};
+        span.x = extent_of(span.kx, span.shears.lo_x, span.shears.hi_x);
+        span.y = extent_of(span.ky, span.shears.lo_y, span.shears.hi_y);
+    } else {
+        span.x = extent(span.kx, g.shear_x);
+        span.y = extent(span.ky, g.shear_y);
+    }
+    return true;
 }
 
 }  // namespace glint::GLINT_ISA

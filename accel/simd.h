@@ -253,6 +253,9 @@ inline __m128 quarter(Float8 a, bool high) {
     return high ? a.hi.v : a.lo.v;
 #endif
 }
+// From memory.
+inline float lane_of(const Float16& a, int lane) { return reinterpret_cast<const float*>(&a)[lane]; }
+inline float first_lane(Float16 a) { return _mm_cvtss_f32(quarter(lower(a), false)); }
 inline float reduce_min(Float16 a) {
     const Float8 b = min(lower(a), upper(a));
     __m128 c = _mm_min_ps(quarter(b, false), quarter(b, true));
