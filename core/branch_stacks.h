@@ -41,14 +41,17 @@ public:
         media_.resize(branches_.size());
         link(old);
     }
-    // Puts a branch onto the stack whose top is `top` and makes it the top.
-    void push(std::uint32_t& top, const Branch& branch) {
+    // Puts a branch onto the stack whose top is `top` and makes it the top; everything but `below` is still to be filled in.
+    // Filled in here, field by field: copied from elsewhere right after it was written, a branch would wait for the processor's
+    // store buffer.
+    [[nodiscard]] Branch& push(std::uint32_t& top) {
         const std::uint32_t node = free_;
-        free_ = branches_[node].below;
-        branches_[node] = branch;
-        branches_[node].below = top;
+        Branch& branch = branches_[node];
+        free_ = branch.below;
+        branch.below = top;
         top = node;
         ++used_;
+        return branch;
     }
     // Gives a node that is on no stack any more back.
     void release(std::uint32_t node) {

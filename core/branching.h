@@ -70,8 +70,12 @@ private:
             return false;
         }
         ++counter;
-        stacks_.push(
-            top, {spawn_origin(s, side), direction, throughput, hash(from.path, branch_index + 0x40000000u), from.bounces + 1});
+        Branch& to = stacks_.push(top);
+        to.origin = spawn_origin(s, side);
+        to.direction = direction;
+        to.throughput = throughput;
+        to.path = hash(from.path, branch_index + 0x40000000u);
+        to.bounces = from.bounces + 1;
         return true;
     }
 

@@ -37,19 +37,21 @@ Camera::Camera(const CameraPose& pose, int width, int height) {
     focus_distance_ = pose.focus_distance > 0.0f ? pose.focus_distance : static_cast<float>(distance);
 }
 
-Ray Camera::ray(float x, float y, glm::vec2 lens) const noexcept {
-    const glm::vec3 d = (right_ * (x * inverse_width_ - 0.5f) + up_ * (0.5f - y * inverse_height_)) - back_;
-    Ray ray;
-    ray.origin = eye_;
-    ray.direction = d;
-    if (has_lens()) {
-        // d has length 1 along the axis, so d * focus_distance ends in the plane of focus (not on a sphere around the eye).
-        const glm::vec3 offset = lens_u_ * lens.x + lens_v_ * lens.y;
-        ray.origin = eye_ + offset;
-        ray.direction = d * focus_distance_ - offset;
+void Camera::pinhole_rays(const float* x, const float* y, float* const direction[3]) const noexcept {
+    // Plain loops over arrays, each step as in ray(): compilers make vector instructions of them, with the same bits.
+    float d[3][kRunOfRays];
+    for (int i = 0; i < 3; ++i) {
+        for (int k = 0; k < kRunOfRays; ++k) {
+            d[i][k] = (right_[i] * (x[k] * inverse_width_ - 0.5f) + up_[i] * (0.5f - y[k] * inverse_height_)) - back_[i];
+        }
     }
-    ray.direction /= std::sqrt(glm::dot(ray.direction, ray.direction));
-    return ray;
+    float length[kRunOfRays];
+    for (int k = 0; k < kRunOfRays; ++k) {
+        length[k] = std::sqrt(d[0][k] * d[0][k] + d[1][k] * d[1][k] + d[2][k] * d[2][k]);
+    }
+    for (int i = 0; i < 3; ++i) {
+        for (int k = 0; k < kRunOfRays; ++k) direction[i][k] = d[i][k] / length[k];
+    }
 }
 
 }  // namespace glint

@@ -2,6 +2,8 @@
 // Knows no sampler: lens and pixel positions are handed in. Invariant: rays are independent of the scene's scale.
 #pragma once
 
+#include <cmath>
+
 #include <glm/glm.hpp>
 
 #include "accel/ray.h"
@@ -29,7 +31,24 @@ public:
 
     // The ray through image position (x, y) in pixels from the top left, y down; (0.5, 0.5) is the first pixel's centre.
     // lens: a point of the unit disk, (0, 0) for the lens centre. The direction has unit length.
-    [[nodiscard]] Ray ray(float x, float y, glm::vec2 lens) const noexcept;
+    [[nodiscard]] Ray ray(float x, float y, glm::vec2 lens) const noexcept {
+        const glm::vec3 d = (right_ * (x * inverse_width_ - 0.5f) + up_ * (0.5f - y * inverse_height_)) - back_;
+        Ray ray;
+        ray.origin = eye_;
+        ray.direction = d;
+        if (has_lens()) {
+            // d has length 1 along the axis, so d * focus_distance ends in the plane of focus (not on a sphere around the eye).
+            const glm::vec3 offset = lens_u_ * lens.x + lens_v_ * lens.y;
+            ray.origin = eye_ + offset;
+            ray.direction = d * focus_distance_ - offset;
+        }
+        ray.direction /= std::sqrt(glm::dot(ray.direction, ray.direction));
+        return ray;
+    }
+    // The directions of a run of rays through the lens centre, as ray() gives them one by one; they all start at eye().
+    static constexpr int kRunOfRays = 8;
+    void pinhole_rays(const float* x, const float* y, float* const direction[3]) const noexcept;
+    [[nodiscard]] glm::vec3 eye() const { return eye_; }
     [[nodiscard]] bool has_lens() const { return lens_radius_ > 0.0f; }
 
 private:

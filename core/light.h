@@ -49,7 +49,12 @@ struct LightSample {
 // The point that u of the unit square chooses; u = (1/2, 1/2) gives the centre of points, quads and spreads.
 [[nodiscard]] LightSample sample_light(const Light& light, glm::vec3 receiver, glm::vec2 u) noexcept;
 
-// The same for a true point without falloff, which needs no random number; inline, since most lights of most scenes are such.
+// A point that shines alike in all directions, however far.
+[[nodiscard]] inline bool is_plain_point(const Light& light) {
+    return light.is_true_point() && (light.falloff == Light::Falloff::none || (light.cos_outer < -1.0f && !(light.range > 0.0f)));
+}
+
+// sample_light() for such a light, which needs no random number; inline, since most lights of most scenes are such.
 [[nodiscard]] inline LightSample sample_plain_point(const Light& light, glm::vec3 receiver) noexcept {
     LightSample s;
     s.point = light.position;
@@ -58,6 +63,7 @@ struct LightSample {
     if (!(distance2 >= std::numeric_limits<float>::min())) return s;
     s.wi = to / std::sqrt(distance2);
     s.arriving = light.emission;
+    if (light.falloff == Light::Falloff::physical) s.arriving *= 1.0f / distance2;
     return s;
 }
 

@@ -71,7 +71,12 @@ private:
             lane.sum = glm::vec3(0.0f);
             lane.top = BranchStacks::kEmpty;
             lane.sample = static_cast<std::uint32_t>(work_.lanes.size() - 1);
-            work_.stacks.push(lane.top, {sample.ray.origin, sample.ray.direction});
+            Branch& branch = work_.stacks.push(lane.top);
+            branch.origin = sample.ray.origin;
+            branch.direction = sample.ray.direction;
+            branch.throughput = glm::vec3(1.0f);
+            branch.path = 1;
+            branch.bounces = 0;
             if constexpr ((kParts & kernel_part::glass) != 0) work_.stacks.medium(lane.top) = plan_.medium;
         }
     }
@@ -101,7 +106,7 @@ private:
                 continue;
             }
             Vertex& v = work_.vertices.add();
-            v.s = surface_point(scene_, {branch.origin, branch.direction, kInfinity}, hit);
+            find_surface_point(scene_, branch.origin, branch.direction, hit, v.s);
             v.wo = -branch.direction;
             v.material = &scene_.materials[v.s.material];
             v.highlight = plan_.highlights && v.material->has_highlight();
@@ -119,7 +124,7 @@ private:
     void add_light(std::uint32_t i, int wave) {
         const Light& light = plan_.lights[i];
         const bool at_light = work_.shadow_origins.at_light(i);
-        const bool plain = light.is_true_point() && light.falloff == Light::Falloff::none;
+        const bool plain = is_plain_point(light);
         RayBatch& rays = work_.shadow_rays;
         rays.clear(order_of_shadows(wave, at_light));
         for (std::uint32_t k = 0; k < work_.vertices.size(); ++k) {

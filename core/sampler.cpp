@@ -36,6 +36,22 @@ std::uint32_t sobol_second_reversed(std::uint32_t i) {
     return i ^ (i >> 16);
 }
 
+// Every dimension pair is the same (0,2)-sequence, shuffled and scrambled on its own (Burley 2020): what of that depends on
+// pixel and dimension alone.
+struct SobolSeeds {
+    std::uint32_t order, scramble_x, scramble_y;
+
+    explicit SobolSeeds(std::uint32_t seed)
+        : order(seed), scramble_x(hash(seed ^ 0x68bc21ebu)), scramble_y(hash(seed ^ 0x02e5be93u)) {}
+    [[nodiscard]] std::uint32_t shuffled(std::uint32_t index) const {
+        return reverse_bits(owen_scramble_reversed(reverse_bits(index), order));
+    }
+    [[nodiscard]] float x(std::uint32_t i) const { return unit_float(reverse_bits(owen_scramble_reversed(i, scramble_x))); }
+    [[nodiscard]] float y(std::uint32_t i) const {
+        return unit_float(reverse_bits(owen_scramble_reversed(sobol_second_reversed(i), scramble_y)));
+    }
+};
+
 // A random permutation of 0..n-1 without a table (Kensler 2013, "Correlated Multi-Jittered Sampling").
 std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint32_t p) {
     std::uint32_t w = n - 1;
@@ -84,14 +100,31 @@ std::uint32_t regular_cell(std::uint32_t index, std::uint32_t dimension) {
 
 }  // namespace
 
+void Sampler::squares(std::uint32_t dimension, float* x, float* y) const noexcept {
+    if (kind_ != SamplerKind::sobol) {
+        for (int k = 0; k < kRun; ++k) {
+            const glm::vec2 p = at(index_ + static_cast<std::uint32_t>(k)).square(dimension);
+            x[k] = p.x;
+            y[k] = p.y;
+        }
+        return;
+    }
+    // What depends on the pixel alone, once; and a plain loop, of which compilers make vector instructions.
+    const SobolSeeds seeds(hash(pixel_, dimension));
+    for (int k = 0; k < kRun; ++k) {
+        const std::uint32_t i = seeds.shuffled(index_ + static_cast<std::uint32_t>(k));
+        x[k] = seeds.x(i);
+        y[k] = seeds.y(i);
+    }
+}
+
 glm::vec2 Sampler::square(std::uint32_t dimension) const noexcept {
     const std::uint32_t seed = hash(pixel_, dimension);
     switch (kind_) {
         case SamplerKind::sobol: {
-            // Every dimension pair is the same (0,2)-sequence, shuffled and scrambled on its own (Burley 2020).
-            const std::uint32_t i = reverse_bits(owen_scramble_reversed(reverse_bits(index_), seed));
-            return {unit_float(reverse_bits(owen_scramble_reversed(i, hash(seed ^ 0x68bc21ebu)))),
-                    unit_float(reverse_bits(owen_scramble_reversed(sobol_second_reversed(i), hash(seed ^ 0x02e5be93u))))};
+            const SobolSeeds seeds(seed);
+            const std::uint32_t i = seeds.shuffled(index_);
+            return {seeds.x(i), seeds.y(i)};
         }
         case SamplerKind::jittered: {
             const std::uint32_t block = hash(seed, index_ / kCells);
@@ -115,8 +148,8 @@ float Sampler::interval(std::uint32_t dimension) const noexcept {
     const std::uint32_t seed = hash(pixel_, dimension);
     switch (kind_) {
         case SamplerKind::sobol: {
-            const std::uint32_t i = reverse_bits(owen_scramble_reversed(reverse_bits(index_), seed));
-            return unit_float(reverse_bits(owen_scramble_reversed(i, hash(seed ^ 0x68bc21ebu))));
+            const SobolSeeds seeds(seed);
+            return seeds.x(seeds.shuffled(index_));
         }
         case SamplerKind::jittered: {
             const std::uint32_t block = hash(seed, index_ / kCells);

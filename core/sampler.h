@@ -34,8 +34,18 @@ public:
           pixel_(hash(hash(hash(x, y), static_cast<std::uint32_t>(seed)),
                       static_cast<std::uint32_t>(seed >> 32) ^ static_cast<std::uint32_t>(index >> 32))) {}
 
+    // Sample `index` of the same pixel, where both are below 2^32.
+    [[nodiscard]] Sampler at(std::uint32_t index) const {
+        Sampler other = *this;
+        other.index_ = index;
+        return other;
+    }
+
     // A point of the unit square for `dimension`, a name such as hash(path, purpose).
     [[nodiscard]] glm::vec2 square(std::uint32_t dimension) const noexcept;
+    // square() of this sample and the kRun - 1 that follow, for less than one by one.
+    static constexpr int kRun = 8;
+    void squares(std::uint32_t dimension, float* x, float* y) const noexcept;
     // A point of the unit interval; use another dimension than for square().
     [[nodiscard]] float interval(std::uint32_t dimension) const noexcept;
 

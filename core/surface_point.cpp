@@ -81,10 +81,10 @@ Exact on_plane(const Plane& plane, glm::dvec3 near) {
 
 }  // namespace
 
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) noexcept {
+void find_surface_point(const Scene& scene, glm::vec3 origin, glm::vec3 direction, const Hit& hit, SurfacePoint& s) noexcept {
     const Geometry& g = *scene.geometry;
     const std::uint32_t i = index_of(hit.primitive);
-    const glm::dvec3 near = glm::dvec3(ray.origin) + static_cast<double>(hit.t) * glm::dvec3(ray.direction);
+    const glm::dvec3 d(direction), near = glm::dvec3(origin) + static_cast<double>(hit.t) * d;
     Exact e;
     switch (kind_of(hit.primitive)) {
         case PrimitiveKind::triangle: e = on_triangle(scene, i, hit); break;
@@ -93,10 +93,8 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) n
         case PrimitiveKind::cone: e = on_cone(g.cones[i], near); break;
         case PrimitiveKind::plane: e = on_plane(g.planes[i], near); break;
     }
-    SurfacePoint s;
     s.p = glm::vec3(e.p);
     s.material = scene.material_of[static_cast<std::size_t>(kind_of(hit.primitive))][i];
-    const glm::dvec3 d(ray.direction);
     s.outside = glm::dot(e.ng, d) < 0.0;
     if (!s.outside) e.ng = -e.ng, e.ns = -e.ns;
     // An interpolated normal may lean past the silhouette; then only the geometric one is of use.
@@ -110,7 +108,6 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) n
     // direction_to() and the hit's t once, each by a unit of the direction's length, so by at most sqrt(3) D along n: 6 units
     // of D. A triangle test now subtracts distances up to reach + D, with the same 8 units as above.
     s.error_from_afar = static_cast<float>(kUlp * (e.reach > 0.0 ? 14.0 : 6.0));
-    return s;
 }
 
 }  // namespace glint

@@ -21,8 +21,13 @@ struct SurfacePoint {
     std::uint32_t material;
 };
 
-// `hit` must be found; `wo` points back along the ray.
-[[nodiscard]] SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) noexcept;
+// `hit` must be found; `wo` points back along the ray. The result is written where it is wanted: see Branch.
+void find_surface_point(const Scene& scene, glm::vec3 origin, glm::vec3 direction, const Hit& hit, SurfacePoint& s) noexcept;
+[[nodiscard]] inline SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) noexcept {
+    SurfacePoint s;
+    find_surface_point(scene, ray.origin, ray.direction, hit, s);
+    return s;
+}
 
 // The origin for a ray that leaves towards the side of the unit vector `n`.
 [[nodiscard]] inline glm::vec3 spawn_origin(const SurfacePoint& s, glm::vec3 n) noexcept {

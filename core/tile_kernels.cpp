@@ -10,13 +10,35 @@
 namespace glint {
 namespace {
 
-// The camera ray of sample `index` of the pixel, at the position that its sampler (or the pixel's centre) gives.
-CameraSample camera_sample(const KernelInput& in, int x, int y, std::uint64_t index) {
-    const Sampler sampler(in.plan.sampler, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), index, in.plan.seed);
+Sampler pixel_sampler(const KernelInput& in, int x, int y) {
+    return {in.plan.sampler, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, in.plan.seed};
+}
+
+// The camera ray of a sample of the pixel, at the position that its sampler (or the pixel's centre) gives.
+void set_camera_sample(const KernelInput& in, int x, int y, const Sampler& sampler, CameraSample& sample) {
     const glm::vec2 jitter = in.plan.jitter ? sampler.square(dimension::pixel) : glm::vec2(0.5f);
     const glm::vec2 lens = in.camera.has_lens() ? disk_from_square(sampler.square(dimension::lens)) : glm::vec2(0.0f);
-    return {in.camera.ray(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y, lens), sampler};
+    sample.ray = in.camera.ray(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y, lens);
+    sample.sampler = sampler;
 }
+
+// The same for a run of samples of one pixel, from that of `sampler` on, through a pinhole: a third of the time a ray.
+constexpr int kRun = Sampler::kRun;
+static_assert(kRun == Camera::kRunOfRays);
+struct Run {
+    float direction[3][kRun];
+
+    Run(const KernelInput& in, int x, int y, const Sampler& sampler) {
+        float at_x[kRun], at_y[kRun];
+        sampler.squares(dimension::pixel, at_x, at_y);
+        for (int k = 0; k < kRun; ++k) {
+            at_x[k] = static_cast<float>(x) + at_x[k];
+            at_y[k] = static_cast<float>(y) + at_y[k];
+        }
+        float* const out[3] = {direction[0], direction[1], direction[2]};
+        in.camera.pinhole_rays(at_x, at_y, out);
+    }
+};
 
 bool finite(glm::vec3 c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
 
@@ -58,11 +80,26 @@ public:
         job.work.prepared_for = in_.generation;
     }
 
-    void add(std::size_t cell, int x, int y, std::uint64_t index) {
-        if (stopped_) return;
-        cells_[count_] = cell;
-        samples_[count_++] = camera_sample(in_, x, y, index);
-        if (count_ == samples_.size()) flush();
+    // Samples [first, last) of a pixel.
+    void add(std::size_t cell, int x, int y, int first, int last) {
+        const Sampler pixel = pixel_sampler(in_, x, y);
+        int k = first;
+        if (in_.plan.jitter && !in_.camera.has_lens()) {
+            for (; k + kRun <= last && !stopped_; k += kRun) {
+                const Run run(in_, x, y, pixel.at(static_cast<std::uint32_t>(k)));
+                for (int i = 0; i < kRun && !stopped_; ++i) {
+                    CameraSample& sample = next(cell);
+                    sample.ray.origin = in_.camera.eye();
+                    sample.ray.direction = {run.direction[0][i], run.direction[1][i], run.direction[2][i]};
+                    sample.sampler = pixel.at(static_cast<std::uint32_t>(k + i));
+                    if (count_ == samples_.size()) flush();
+                }
+            }
+        }
+        for (; k < last && !stopped_; ++k) {
+            set_camera_sample(in_, x, y, pixel.at(static_cast<std::uint32_t>(k)), next(cell));
+            if (count_ == samples_.size()) flush();
+        }
     }
     // Traces what has been gathered. False when the frame is not wanted any more.
     bool flush() {
@@ -74,6 +111,11 @@ public:
     }
 
 private:
+    CameraSample& next(std::size_t cell) {
+        cells_[count_] = cell;
+        return samples_[count_++];
+    }
+
     const KernelInput& in_;
     Integrator<A, kParts> integrator_;
     Take take_;
@@ -93,7 +135,7 @@ bool run_preview(const Job& job) {
     along_z_curve(columns, rows, [&](int i, int j) {
         const int x = std::min(r.x0 + i * kPreviewBlock + kPreviewBlock / 2, r.x1 - 1);
         const int y = std::min(r.y0 + j * kPreviewBlock + kPreviewBlock / 2, r.y1 - 1);
-        batcher.add(static_cast<std::size_t>(j * columns + i), x, y, 0);
+        batcher.add(static_cast<std::size_t>(j * columns + i), x, y, 0, 1);
     });
     return batcher.flush();
 }
@@ -118,7 +160,7 @@ bool run(const Job& job) {
     // The samples of a pixel are the most alike of all, so they stay together; and their sums need them in this order.
     along_z_curve(width, r.y1 - r.y0, [&](int i, int j) {
         const auto pixel = static_cast<std::size_t>(j * width + i);
-        for (int k = job.first; k < job.last; ++k) batcher.add(pixel, r.x0 + i, r.y0 + j, static_cast<std::uint64_t>(k));
+        batcher.add(pixel, r.x0 + i, r.y0 + j, job.first, job.last);
     });
     return batcher.flush();
 }
