@@ -16,24 +16,23 @@ struct Exact {
     double reach = 0.0;  // size of the numbers that a later float intersection subtracts; 0 when that is done in double
 };
 
-Exact on_triangle(const Scene& scene, std::uint32_t i, const Hit& hit) {
+inline Exact on_triangle(const Scene& scene, std::uint32_t i, const Hit& hit) {
     const Geometry& g = *scene.geometry;
     const auto& index = g.triangles[i];
     const glm::dvec3 a(g.vertices[index[0]]), b(g.vertices[index[1]]), c(g.vertices[index[2]]);
     // From the barycentric weights in double: on the plane exactly, however wrong t is.
-    Exact e;
     const double u = hit.u, v = hit.v;
-    e.p = (1.0 - u - v) * a + u * b + v * c;
-    e.ng = unit(glm::cross(b - a, c - a));
-    e.ns = e.ng;
+    const glm::dvec3 p = (1.0 - u - v) * a + u * b + v * c;
+    const glm::dvec3 ng = unit(glm::cross(b - a, c - a));
     // Later rays are tested in float on vertex - origin: the worst axis counts for all (the shear mixes them).
-    e.reach = std::max(largest(a - e.p), std::max(largest(b - e.p), largest(c - e.p)));
+    const double reach = std::max(largest(a - p), std::max(largest(b - p), largest(c - p)));
+    glm::dvec3 ns = ng;
     if (!scene.normals.empty()) {
         const glm::dvec3 n = (1.0 - u - v) * glm::dvec3(scene.normals[index[0]]) + u * glm::dvec3(scene.normals[index[1]]) +
                              v * glm::dvec3(scene.normals[index[2]]);
-        if (glm::dot(n, n) > 0.0) e.ns = unit(n);
+        if (glm::dot(n, n) > 0.0) ns = unit(n);
     }
-    return e;
+    return {p, ng, ns, reach};
 }
 
 Exact on_sphere(const Sphere& s, glm::dvec3 near) {
@@ -79,22 +78,10 @@ Exact on_plane(const Plane& plane, glm::dvec3 near) {
     return e;
 }
 
-}  // namespace
-
-void find_surface_point(const Scene& scene, glm::vec3 origin, glm::vec3 direction, const Hit& hit, SurfacePoint& s) noexcept {
-    const Geometry& g = *scene.geometry;
-    const std::uint32_t i = index_of(hit.primitive);
-    const glm::dvec3 d(direction), near = glm::dvec3(origin) + static_cast<double>(hit.t) * d;
-    Exact e;
-    switch (kind_of(hit.primitive)) {
-        case PrimitiveKind::triangle: e = on_triangle(scene, i, hit); break;
-        case PrimitiveKind::sphere: e = on_sphere(g.spheres[i], near); break;
-        case PrimitiveKind::box: e = on_box(g.boxes[i], near, static_cast<int>(hit.u)); break;
-        case PrimitiveKind::cone: e = on_cone(g.cones[i], near); break;
-        case PrimitiveKind::plane: e = on_plane(g.planes[i], near); break;
-    }
+// Rounds, turned towards the viewer. Inlined behind each kind of primitive: an Exact that went through memory would be most of
+// the time.
+[[gnu::always_inline]] inline void finish(Exact e, const glm::dvec3& d, SurfacePoint& s) {
     s.p = glm::vec3(e.p);
-    s.material = scene.material_of[static_cast<std::size_t>(kind_of(hit.primitive))][i];
     s.outside = glm::dot(e.ng, d) < 0.0;
     if (!s.outside) e.ng = -e.ng, e.ns = -e.ns;
     // An interpolated normal may lean past the silhouette; then only the geometric one is of use.
@@ -108,6 +95,22 @@ void find_surface_point(const Scene& scene, glm::vec3 origin, glm::vec3 directio
     // direction_to() and the hit's t once, each by a unit of the direction's length, so by at most sqrt(3) D along n: 6 units
     // of D. A triangle test now subtracts distances up to reach + D, with the same 8 units as above.
     s.error_from_afar = static_cast<float>(kUlp * (e.reach > 0.0 ? 14.0 : 6.0));
+}
+
+}  // namespace
+
+void find_surface_point(const Scene& scene, glm::vec3 origin, glm::vec3 direction, const Hit& hit, SurfacePoint& s) noexcept {
+    const Geometry& g = *scene.geometry;
+    const std::uint32_t i = index_of(hit.primitive);
+    s.material = scene.material_of[static_cast<std::size_t>(kind_of(hit.primitive))][i];
+    const glm::dvec3 d(direction), near = glm::dvec3(origin) + static_cast<double>(hit.t) * d;
+    switch (kind_of(hit.primitive)) {
+        case PrimitiveKind::triangle: return finish(on_triangle(scene, i, hit), d, s);
+        case PrimitiveKind::sphere: return finish(on_sphere(g.spheres[i], near), d, s);
+        case PrimitiveKind::box: return finish(on_box(g.boxes[i], near, static_cast<int>(hit.u)), d, s);
+        case PrimitiveKind::cone: return finish(on_cone(g.cones[i], near), d, s);
+        case PrimitiveKind::plane: return finish(on_plane(g.planes[i], near), d, s);
+    }
 }
 
 }  // namespace glint
