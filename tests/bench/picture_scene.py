@@ -2,8 +2,10 @@
 
 Knows no renderer. Right-handed, as glint is. Lights are points without falloff.
 """
+import array
 import json
 import math
+import os
 import subprocess
 
 
@@ -32,13 +34,16 @@ def unit(a):
 
 
 class Scene:
-    """vertices, triangles, spheres, materials, lights, background as scene_dump lists them; camera as unit axes."""
+    """vertices, triangles and triangle_material as flat arrays; spheres, materials, lights, background as scene_dump lists
+    them; camera as unit axes."""
 
-    def __init__(self, dump, name):
+    def __init__(self, dump, arrays, name):
         self.name = name
-        self.vertices, self.triangles = dump["vertices"], dump["triangles"]
-        self.spheres, self.materials = dump["spheres"], dump["materials"]
-        self.triangle_material, self.sphere_material = dump["triangle_material"], dump["sphere_material"]
+        self.vertices, self.triangles, self.triangle_material = array.array("f"), array.array("I"), array.array("I")
+        for values, count in ((self.vertices, 3 * dump["vertices"]), (self.triangles, 3 * dump["triangles"]),
+                              (self.triangle_material, dump["triangles"])):
+            values.fromfile(arrays, count)
+        self.spheres, self.materials, self.sphere_material = dump["spheres"], dump["materials"], dump["sphere_material"]
         self.lights, self.background = dump["lights"], dump["background"]
         self.look(dump["camera"])
 
@@ -57,11 +62,20 @@ class Scene:
         for i, material in enumerate(self.triangle_material):
             yield self.triangles[3 * i:3 * i + 3], material
 
+    def corners(self, material):
+        """The vertex numbers of all triangles of a material, as one flat array."""
+        return array.array("I", (i for t, m in self.each_triangle() if m == material for i in t))
 
-def load(dump_program, source, name):
-    """None, with the program's own line on stderr, where the scene is not to be had."""
-    result = subprocess.run([dump_program, source], stdout=subprocess.PIPE, check=False)
-    return Scene(json.loads(result.stdout), name) if result.returncode == 0 else None
+
+def load(dump_program, source, name, path):
+    """None, with the program's own line on stderr, where the scene is not to be had. `path`: a file to use and remove."""
+    result = subprocess.run([dump_program, source, path], stdout=subprocess.PIPE, check=False)
+    if result.returncode != 0:
+        return None
+    with open(path, "rb") as arrays:
+        scene = Scene(json.loads(result.stdout), arrays, name)
+    os.remove(path)
+    return scene
 
 
 def matte(color):
@@ -71,24 +85,23 @@ def matte(color):
 def on_a_floor(scene):
     """The mesh scaled to a diagonal of 100 on a large matte floor under one light; no mirrors, no highlights."""
     # Meshes come on a stage of another material, which goes.
-    kept = [t for t, material in scene.each_triangle() if material == scene.triangle_material[0]]
-    scene.triangles = [i for t in kept for i in t]
-    scene.triangle_material = [0] * len(kept)
-    used = sorted(set(scene.triangles))
+    corners = scene.corners(scene.triangle_material[0])
+    used = sorted(set(corners))
     number = {i: k for k, i in enumerate(used)}
-    scene.vertices = [x for i in used for x in scene.vertex(i)]
-    scene.triangles = [number[i] for i in scene.triangles]
-    axes = [scene.vertices[k::3] for k in range(3)]
+    axes = [[scene.vertices[3 * i + k] for i in used] for k in range(3)]
     lo, hi = [min(a) for a in axes], [max(a) for a in axes]
     middle, size = scale(add(lo, hi), 0.5), 100.0 / length(subtract(hi, lo))
+    scene.vertices = array.array("f", bytes(12 * len(used)))
     for k in range(3):
-        scene.vertices[k::3] = [(x - middle[k]) * size for x in axes[k]]
-    floor, reach, first = (lo[1] - middle[1]) * size, 300.0, len(scene.vertices) // 3
+        scene.vertices[k::3] = array.array("f", ((x - middle[k]) * size for x in axes[k]))
+    floor, reach, first = (lo[1] - middle[1]) * size, 300.0, len(used)
     for x, z in ((-reach, -reach), (reach, -reach), (-reach, reach), (reach, reach)):
-        scene.vertices += [x, floor, z]
-    scene.triangles += [first, first + 2, first + 1, first + 1, first + 2, first + 3]
+        scene.vertices.extend([x, floor, z])
+    scene.triangles = array.array("I", (number[i] for i in corners))
+    scene.triangle_material = array.array("I", bytes(4 * (len(corners) // 3)))
+    scene.triangles.extend([first, first + 2, first + 1, first + 1, first + 2, first + 3])
+    scene.triangle_material.extend([1, 1])
     scene.materials = [matte([0.7, 0.6, 0.5]), matte([0.5, 0.5, 0.5])]
-    scene.triangle_material = [0] * len(kept) + [1, 1]
     scene.lights = [[-60.0, 150.0, 90.0]]
     scene.background = [0.0, 0.0, 0.0]  # glTF knows none
     eye = scale(unit([0.35, 0.3, 1.0]), 200.0)

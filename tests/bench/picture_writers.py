@@ -4,7 +4,6 @@ Knows no clock. POV-Ray: the camera's axes are given outright, so its left-hande
 left-handed, so it gets the scene mirrored in x; it has no index of refraction: its glass does not bend. glTF and Mitsuba:
 light falls off and a matte surface reflects albedo / pi, so a lamp of pi d^2 is as bright at the target as the others' lamps.
 """
-import array
 import json
 import math
 import struct
@@ -95,14 +94,14 @@ def lamp(scene):
 
 def write_glb(scene, path):
     """A mesh of one buffer with a primitive for each material, one point light, one camera. No spheres."""
-    vertices, views, accessors, primitives = array.array("f", scene.vertices), [], [], []
+    vertices, views, accessors, primitives = scene.vertices, [], [], []
     axes = [scene.vertices[k::3] for k in range(3)]
     blob = bytearray(vertices.tobytes())
     views.append({"buffer": 0, "byteOffset": 0, "byteLength": len(blob)})
-    lo, hi = [[float(array.array("f", [f(a)])[0]) for a in axes] for f in (min, max)]
+    lo, hi = [[f(a) for a in axes] for f in (min, max)]
     accessors.append({"bufferView": 0, "componentType": 5126, "count": len(vertices) // 3, "type": "VEC3", "min": lo, "max": hi})
     for m in sorted(set(scene.triangle_material)):
-        indices = array.array("I", [i for t, material in scene.each_triangle() if material == m for i in t])
+        indices = scene.corners(m)
         views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": 4 * len(indices)})
         accessors.append({"bufferView": len(views) - 1, "componentType": 5125, "count": len(indices), "type": "SCALAR"})
         primitives.append({"attributes": {"POSITION": 0}, "indices": len(accessors) - 1, "material": m})
@@ -127,33 +126,44 @@ def write_glb(scene, path):
         out.write(struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(blob), b"BIN\0") + blob)
 
 
-def write_mitsuba(scene, path):
-    """The XML, and beside it a binary PLY for each material. Direct light only."""
+def write_mitsuba(scene, base, radius):
+    """BASE_point.xml and BASE_sphere.xml, and for each material a binary PLY. Direct light only: one ray to the light a sample,
+    as in glint, and none in the surface's own directions. The ball of that radius is as bright at a distance as the point."""
     shapes = ""
     for m in sorted(set(scene.triangle_material)):
-        mesh = f"{path}.{m}.ply"
+        mesh = f"{base}_{m}.ply"
         write_ply(scene, m, mesh)
         shapes += (f'<shape type="ply"><string name="filename" value="{mesh}"/><boolean name="face_normals" value="true"/>'
                    f'<bsdf type="twosided"><bsdf type="diffuse"><rgb name="reflectance"'
                    f' value="{numbers(scene.materials[m]["diffuse"])}"/></bsdf></bsdf></shape>\n')
-    with open(path, "w", encoding="ascii") as out:
-        out.write(f'<scene version="3.0.0">\n<default name="spp" value="1"/>\n<integrator type="direct"/>\n'
-                  f'<sensor type="perspective"><float name="fov" value="{scene.angle:.7g}"/><string name="fov_axis" value="y"/>\n'
-                  f'<transform name="to_world"><lookat origin="{numbers(scene.eye)}" target="{numbers(scene.target)}"'
-                  f' up="{numbers(scene.up)}"/></transform>\n<sampler type="independent"><integer name="sample_count"'
-                  f' value="$spp"/></sampler>\n<film type="hdrfilm"><integer name="width" value="512"/><integer name="height"'
-                  f' value="512"/><rfilter type="box"/></film></sensor>\n'
-                  f'<emitter type="point"><point name="position" value="{numbers(scene.lights[0])}"/>'
-                  f'<rgb name="intensity" value="{lamp(scene):.7g}"/></emitter>\n'
-                  f'{shapes}</scene>\n')
+    place, intensity = numbers(scene.lights[0]), lamp(scene)
+    lights = {
+        "point": f'<emitter type="point"><point name="position" value="{place}"/>'
+                 f'<rgb name="intensity" value="{intensity:.7g}"/></emitter>',
+        "sphere": f'<shape type="sphere"><point name="center" value="{place}"/><float name="radius" value="{radius:.7g}"/>'
+                  f'<emitter type="area"><rgb name="radiance" value="{intensity / (math.pi * radius * radius):.7g}"/></emitter>'
+                  '</shape>'}
+    for name, light in lights.items():
+        with open(f"{base}_{name}.xml", "w", encoding="ascii") as out:
+            out.write(f'<scene version="3.0.0">\n<integrator type="direct"><integer name="emitter_samples" value="1"/>'
+                      f'<integer name="bsdf_samples" value="0"/></integrator>\n'
+                      f'<sensor type="perspective"><float name="fov" value="{scene.angle:.7g}"/>'
+                      f'<string name="fov_axis" value="y"/>\n<transform name="to_world"><lookat origin="{numbers(scene.eye)}"'
+                      f' target="{numbers(scene.target)}" up="{numbers(scene.up)}"/></transform>\n'
+                      f'<sampler type="independent"/><film type="hdrfilm"><integer name="width" value="512"/>'
+                      f'<integer name="height" value="512"/><rfilter type="box"/></film></sensor>\n{light}\n{shapes}</scene>\n')
 
 
 def write_ply(scene, material, path):
-    chosen = [t for t, m in scene.each_triangle() if m == material]
+    corners = scene.corners(material).tobytes()
+    faces = len(corners) // 12
+    # A face: the byte 3, then three numbers of four bytes.
+    body = bytearray(b"\3" * (13 * faces))
+    for k in range(12):
+        body[k + 1::13] = corners[k::12]
     with open(path, "wb") as out:
         out.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {len(scene.vertices) // 3}\nproperty float x\n"
-                  f"property float y\nproperty float z\nelement face {len(chosen)}\n"
+                  f"property float y\nproperty float z\nelement face {faces}\n"
                   "property list uchar int vertex_indices\nend_header\n".encode())
-        out.write(array.array("f", scene.vertices).tobytes())
-        for t in chosen:
-            out.write(struct.pack("<Biii", 3, *t))
+        out.write(scene.vertices.tobytes())
+        out.write(body)
