@@ -15,20 +15,13 @@
 
 #include <fmt/format.h>
 
+#include "core/display_bytes.h"
+
 namespace glint {
 namespace {
 
 // The largest picture that is read back: 2^28 pixels, as for rendering.
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
-
-float srgb_encode(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f; }
-
-std::uint8_t display_byte(float x, float scale, Transfer transfer) {
-    x = std::clamp(x * scale, 0.0f, 1.0f);
-    if (transfer == Transfer::srgb) x = srgb_encode(x);
-    // In double: 255.99f * x would round some products up to the next byte.
-    return static_cast<std::uint8_t>(std::min(255.0, std::floor(255.99 * static_cast<double>(x))));
-}
 
 std::uint32_t crc32(const std::string& bytes) {
     std::uint32_t crc = 0xffffffffu;
@@ -83,13 +76,14 @@ Image8 to_display(const Image& image, const DisplaySettings& display) {
     Image8 out{image.width, image.height, {}};
     out.rgb.resize(image.pixels.size() * 3);
     const float scale = std::exp2(display.exposure_ev);
+    const DisplayBytes& bytes = DisplayBytes::of(display.transfer);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const glm::vec3 p = image.pixels[i];
         if (std::isnan(p.x) || std::isnan(p.y) || std::isnan(p.z)) {
             out.rgb[3 * i] = out.rgb[3 * i + 2] = 255;  // magenta
             continue;
         }
-        for (int c = 0; c < 3; ++c) out.rgb[3 * i + static_cast<std::size_t>(c)] = display_byte(p[c], scale, display.transfer);
+        for (int c = 0; c < 3; ++c) out.rgb[3 * i + static_cast<std::size_t>(c)] = bytes.byte_of(p[c] * scale);
     }
     return out;
 }
