@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "accel/isa.h"
+
 namespace glint {
 
 Camera::Camera(const CameraPose& pose, int width, int height) {
@@ -37,8 +39,9 @@ Camera::Camera(const CameraPose& pose, int width, int height) {
     focus_distance_ = pose.focus_distance > 0.0f ? pose.focus_distance : static_cast<float>(distance);
 }
 
-void Camera::pinhole_rays(const float* x, const float* y, float* const direction[3]) const noexcept {
-    // Plain loops over arrays, each step as in ray(): compilers make vector instructions of them, with the same bits.
+// Plain loops over arrays, each step as in ray(): compilers make vector instructions of them, with the same bits.
+[[gnu::always_inline]] inline void Camera::directions(const float* x, const float* y,
+                                                      float (&direction)[3][kRunOfRays]) const noexcept {
     float d[3][kRunOfRays];
     for (int i = 0; i < 3; ++i) {
         for (int k = 0; k < kRunOfRays; ++k) {
@@ -52,6 +55,16 @@ void Camera::pinhole_rays(const float* x, const float* y, float* const direction
     for (int i = 0; i < 3; ++i) {
         for (int k = 0; k < kRunOfRays; ++k) direction[i][k] = d[i][k] / length[k];
     }
+}
+
+[[gnu::target("avx2")]] void Camera::directions_avx2(const float* x, const float* y,
+                                                     float (&direction)[3][kRunOfRays]) const noexcept {
+    directions(x, y, direction);
+}
+
+void Camera::pinhole_rays(const float* x, const float* y, float (&direction)[3][kRunOfRays]) const noexcept {
+    if (isa_in_use() == Isa::baseline) return directions(x, y, direction);
+    directions_avx2(x, y, direction);
 }
 
 }  // namespace glint

@@ -2,13 +2,15 @@
 
 #include <cmath>
 
+#include "accel/isa.h"
+
 namespace glint {
 namespace {
 
 // The top 24 bits, so that 0xffffffff stays below 1 (a float product with 2^-32 would round to 1).
-float unit_float(std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
+inline float unit_float(std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
 
-std::uint32_t reverse_bits(std::uint32_t x) {
+inline std::uint32_t reverse_bits(std::uint32_t x) {
     x = (x >> 16) | (x << 16);
     x = ((x & 0xff00ff00u) >> 8) | ((x & 0x00ff00ffu) << 8);
     x = ((x & 0xf0f0f0f0u) >> 4) | ((x & 0x0f0f0f0fu) << 4);
@@ -18,7 +20,7 @@ std::uint32_t reverse_bits(std::uint32_t x) {
 
 // Owen scrambling of a bit-reversed number: each bit is flipped by a hash of the bits below it (Laine & Karras 2011;
 // constants of Vegdahl 2021, "Building a Better LK Hash").
-std::uint32_t owen_scramble_reversed(std::uint32_t x, std::uint32_t seed) {
+inline std::uint32_t owen_scramble_reversed(std::uint32_t x, std::uint32_t seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
     x *= (seed >> 16) | 1u;
@@ -28,7 +30,7 @@ std::uint32_t owen_scramble_reversed(std::uint32_t x, std::uint32_t seed) {
 }
 
 // Second Sobol' dimension, bit-reversed: the Pascal matrix modulo 2 as five butterfly steps instead of 32 columns.
-std::uint32_t sobol_second_reversed(std::uint32_t i) {
+inline std::uint32_t sobol_second_reversed(std::uint32_t i) {
     i ^= (i & 0xaaaaaaaau) >> 1;
     i ^= (i & 0xccccccccu) >> 2;
     i ^= (i & 0xf0f0f0f0u) >> 4;
@@ -51,6 +53,18 @@ struct SobolSeeds {
         return unit_float(reverse_bits(owen_scramble_reversed(sobol_second_reversed(i), scramble_y)));
     }
 };
+
+// A plain loop, of which compilers make vector instructions; integers and powers of two have the same bits in all of them.
+[[gnu::always_inline]] inline void sobol_squares(const SobolSeeds& seeds, std::uint32_t first, float* x, float* y) {
+    for (int k = 0; k < Sampler::kRun; ++k) {
+        const std::uint32_t i = seeds.shuffled(first + static_cast<std::uint32_t>(k));
+        x[k] = seeds.x(i);
+        y[k] = seeds.y(i);
+    }
+}
+[[gnu::target("avx2")]] void sobol_squares_avx2(const SobolSeeds& seeds, std::uint32_t first, float* x, float* y) {
+    sobol_squares(seeds, first, x, y);
+}
 
 // A random permutation of 0..n-1 without a table (Kensler 2013, "Correlated Multi-Jittered Sampling").
 std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint32_t p) {
@@ -109,13 +123,9 @@ void Sampler::squares(std::uint32_t dimension, float* x, float* y) const noexcep
         }
         return;
     }
-    // What depends on the pixel alone, once; and a plain loop, of which compilers make vector instructions.
     const SobolSeeds seeds(hash(pixel_, dimension));
-    for (int k = 0; k < kRun; ++k) {
-        const std::uint32_t i = seeds.shuffled(index_ + static_cast<std::uint32_t>(k));
-        x[k] = seeds.x(i);
-        y[k] = seeds.y(i);
-    }
+    if (isa_in_use() == Isa::baseline) return sobol_squares(seeds, index_, x, y);
+    sobol_squares_avx2(seeds, index_, x, y);
 }
 
 glm::vec2 Sampler::square(std::uint32_t dimension) const noexcept {

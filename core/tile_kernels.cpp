@@ -35,8 +35,7 @@ struct Run {
             at_x[k] = static_cast<float>(x) + at_x[k];
             at_y[k] = static_cast<float>(y) + at_y[k];
         }
-        float* const out[3] = {direction[0], direction[1], direction[2]};
-        in.camera.pinhole_rays(at_x, at_y, out);
+        in.camera.pinhole_rays(at_x, at_y, direction);
     }
 };
 
@@ -85,9 +84,10 @@ public:
         const Sampler pixel = pixel_sampler(in_, x, y);
         int k = first;
         if (in_.plan.jitter && !in_.camera.has_lens()) {
-            for (; k + kRun <= last && !stopped_; k += kRun) {
+            // Half a run costs less than its rays one by one.
+            for (; last - k >= kRun / 2 && !stopped_; k += std::min(kRun, last - k)) {
                 const Run run(in_, x, y, pixel.at(static_cast<std::uint32_t>(k)));
-                for (int i = 0; i < kRun && !stopped_; ++i) {
+                for (int i = 0; i < std::min(kRun, last - k) && !stopped_; ++i) {
                     CameraSample& sample = next(cell);
                     sample.ray.origin = in_.camera.eye();
                     sample.ray.direction = {run.direction[0][i], run.direction[1][i], run.direction[2][i]};
