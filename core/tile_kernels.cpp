@@ -22,7 +22,7 @@ void set_camera_sample(const KernelInput& in, int x, int y, const Sampler& sampl
     sample.sampler = sampler;
 }
 
-// The same for a run of samples of one pixel, from that of `sampler` on, through a pinhole: a third of the time a ray.
+// The same for a run of samples of one pixel, from that of `sampler` on, through a pinhole.
 constexpr int kRun = Sampler::kRun;
 static_assert(kRun == Camera::kRunOfRays);
 struct Run {
