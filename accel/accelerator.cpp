@@ -8,7 +8,7 @@ std::shared_ptr<const AnyAccelerator> build_accelerator(AcceleratorKind kind, st
                                                         const ParallelFor& parallel_for) {
     switch (kind) {
         case AcceleratorKind::none: return std::make_shared<const AnyAccelerator>(BruteForce(std::move(geometry)));
-        case AcceleratorKind::grid: return std::make_shared<const AnyAccelerator>(UniformGrid(std::move(geometry)));
+        case AcceleratorKind::grid: return std::make_shared<const AnyAccelerator>(UniformGrid(std::move(geometry), parallel_for));
         case AcceleratorKind::bvh: break;
     }
     return std::make_shared<const AnyAccelerator>(Bvh(std::move(geometry), parallel_for));

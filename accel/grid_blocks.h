@@ -6,15 +6,11 @@
 
 #include "accel/bvh_layout.h"
 #include "accel/geometry.h"
+#include "accel/grid_order.h"
 #include "accel/huge_pages.h"
 #include "accel/parallel.h"
 
 namespace glint {
-
-struct BoundedPrimitive {
-    Aabb bounds;
-    PrimitiveId id;
-};
 
 struct GridBlocks {
     struct alignas(kBvhUnit) Unit {

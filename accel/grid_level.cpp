@@ -12,20 +12,6 @@ constexpr double kMaxCellsPerAxis = 1 << 14;
 
 }  // namespace
 
-CellRange range_of(const GridLevel& level, const DoubleBox& box) {
-    CellRange r;
-    for (int i = 0; i < 3; ++i) {
-        // Truncation serves as floor, since what lies below counts to the first cell.
-        const auto at = [&](double x) {
-            const double cell = (x - static_cast<double>(level.lo[i])) * static_cast<double>(level.inverse[i]);
-            return static_cast<int>(std::min(std::max(cell, 0.0), level.n[i] - 1.0));
-        };
-        r.first[i] = at(box.lo[i]);
-        r.last[i] = at(box.hi[i]);
-    }
-    return r;
-}
-
 GridLevel make_level(const DoubleBox& box, double cells) {
     GridLevel level{};
     const glm::dvec3 size = box.size();

@@ -1,40 +1,16 @@
 // One tree, byte for byte, whoever builds it: the picture must not know how many threads there were.
-#include <algorithm>
-#include <atomic>
 #include <cstring>
-#include <numeric>
 #include <stdexcept>
-#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "accel/accelerator.h"
 #include "tests/accel/adversarial_scenes.h"
 #include "tests/accel/bvh_survey.h"
+#include "tests/accel/schedules.h"
 
 namespace glint {
 namespace {
-
-// Every loop in another order: back to front, then at random.
-void shuffled_for(std::size_t count, const std::function<void(std::size_t)>& task) {
-    std::vector<std::size_t> order(count);
-    std::iota(order.rbegin(), order.rend(), std::size_t{0});
-    Random random(count);
-    for (std::size_t i = 0; count > 2 && i < count; ++i)
-        std::swap(order[i],
-                  order[std::min(count - 1, static_cast<std::size_t>(random.uniform(0.0f, static_cast<float>(count))))]);
-    for (const std::size_t i : order) task(i);
-}
-
-void on_four_threads(std::size_t count, const std::function<void(std::size_t)>& task) {
-    std::atomic<std::size_t> next{0};
-    std::vector<std::jthread> threads;
-    for (int t = 0; t < 4; ++t) {
-        threads.emplace_back([&] {
-            for (std::size_t i = next++; i < count; i = next++) task(i);
-        });
-    }
-}
 
 // Blocks of some kinds end in bytes that nobody writes or reads; here they are zero.
 void blank_padding(BvhTree& tree, BvhRef index = 0) {
@@ -46,15 +22,7 @@ void blank_padding(BvhTree& tree, BvhRef index = 0) {
             blank_padding(tree, node.child[k]);
             continue;
         }
-        std::size_t used = sizeof(TriangleBlock), size = sizeof(TriangleBlock);
-        switch (static_cast<PrimitiveKind>(leaf_kind(node.child[k]))) {
-            case PrimitiveKind::triangle: used = offsetof(TriangleBlock, id) + sizeof(TriangleBlock::id); break;
-            case PrimitiveKind::sphere:
-                used = offsetof(SphereBlock, id) + sizeof(SphereBlock::id), size = sizeof(SphereBlock);
-                break;
-            case PrimitiveKind::box: used = offsetof(BoxBlock, id) + sizeof(BoxBlock::id), size = sizeof(BoxBlock); break;
-            default: used = offsetof(ConeBlock, id) + sizeof(ConeBlock::id), size = sizeof(ConeBlock); break;
-        }
+        const auto [used, size] = block_bytes(static_cast<PrimitiveKind>(leaf_kind(node.child[k])));
         std::memset(tree.units[node.child[k] & kUnitMask].bytes + used, 0, size - used);
     }
 }
