@@ -5,13 +5,13 @@
 namespace glint {
 
 std::shared_ptr<const AnyAccelerator> build_accelerator(AcceleratorKind kind, std::shared_ptr<const Geometry> geometry,
-                                                        const ParallelFor& parallel_for) {
+                                                        const ParallelFor& parallel_for, BuildQuality quality) {
     switch (kind) {
         case AcceleratorKind::none: return std::make_shared<const AnyAccelerator>(BruteForce(std::move(geometry)));
         case AcceleratorKind::grid: return std::make_shared<const AnyAccelerator>(UniformGrid(std::move(geometry), parallel_for));
         case AcceleratorKind::bvh: break;
     }
-    return std::make_shared<const AnyAccelerator>(Bvh(std::move(geometry), parallel_for));
+    return std::make_shared<const AnyAccelerator>(Bvh(std::move(geometry), parallel_for, isa_in_use(), quality));
 }
 
 std::optional<AcceleratorKind> accelerator_named(std::string_view name) {

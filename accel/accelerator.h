@@ -40,7 +40,8 @@ using AnyAccelerator = std::variant<BruteForce, UniformGrid, Bvh>;  // in the or
 // Throws std::bad_alloc when memory does not suffice, std::length_error when ids do not, and what parallel_for throws.
 [[nodiscard]] std::shared_ptr<const AnyAccelerator> build_accelerator(AcceleratorKind kind,
                                                                       std::shared_ptr<const Geometry> geometry,
-                                                                      const ParallelFor& parallel_for = serial_for);
+                                                                      const ParallelFor& parallel_for = serial_for,
+                                                                      BuildQuality quality = BuildQuality::quality);
 [[nodiscard]] std::optional<AcceleratorKind> accelerator_named(std::string_view name);
 [[nodiscard]] Hit closest_hit(const AnyAccelerator& accelerator, const Ray& ray) noexcept;
 [[nodiscard]] bool occluded(const AnyAccelerator& accelerator, const Ray& ray) noexcept;

@@ -44,7 +44,7 @@ std::string filled_in(std::string name, const Job& job) {
         if (c == ':' || c == ',' || c == '=') c = '_';
     }
     replace_all(name, "{scene}", scene);
-    replace_all(name, "{accel}", std::string(kAcceleratorNames[static_cast<std::size_t>(job.accelerator)]));
+    replace_all(name, "{accel}", std::string(kAcceleratorNames[static_cast<std::size_t>(job.accelerator.kind)]));
     replace_all(name, "{spp}", std::to_string(job.spp));
     if (name.find("{n}") == std::string::npos) return name;
     for (int n = 1;; ++n) {
@@ -105,7 +105,7 @@ nlohmann::json stats(const Job& job, const Options& o, const Progress& p, double
     const double seconds = std::max(p.seconds, 1e-9);
     const RayCounts& r = p.rays;
     return {{"scene", job.scene->name},
-            {"accelerator", kAcceleratorNames[static_cast<std::size_t>(job.accelerator)]},
+            {"accelerator", kAcceleratorNames[static_cast<std::size_t>(job.accelerator.kind)]},
             {"width", job.width},
             {"height", job.height},
             {"spp", job.spp},
@@ -118,6 +118,7 @@ nlohmann::json stats(const Job& job, const Options& o, const Progress& p, double
             {"seconds", p.seconds},
             {"load_ms", load_seconds * 1e3},
             {"build_ms", build_seconds * 1e3},
+            {"build_quality", job.accelerator.quality == BuildQuality::fast ? "fast" : "quality"},
             {"accelerator_bytes", accelerator_bytes},
             {"primitives", job.scene->geometry->bounded_count() + job.scene->geometry->planes.size()},
             {"rays", {{"camera", r.camera}, {"shadow", r.shadow}, {"reflection", r.reflection}, {"refraction", r.refraction}}},
@@ -219,12 +220,14 @@ int run_info(const Options& o) {
     }
     fmt::print("features{}\n", features);
     // What `render` takes without further options.
-    const RayDemand demand = expected_rays(*scene, scene->width, scene->height, scene->spp > 0 ? scene->spp : 64);
+    const RayDemand demand =
+        expected_rays(*scene, scene->width, scene->height, scene->spp > 0 ? scene->spp : 64, available_threads());
     const auto seconds = estimated_seconds(g, demand);
-    const AcceleratorKind kind = automatic_accelerator(*scene, demand);
-    fmt::print("accelerator {} ({} bounded primitives, {:.2g} rays: none {:.2g} s, grid {:.2g} s, bvh {:.2g} s)\n",
-               kAcceleratorNames[static_cast<std::size_t>(kind)], g.bounded_count(), demand.rays, seconds[0], seconds[1],
-               seconds[2]);
+    const AcceleratorChoice choice = automatic_accelerator(*scene, demand);
+    fmt::print(
+        "accelerator {}{} ({} bounded primitives, {:.2g} rays: none {:.2g} s, grid {:.2g} s, bvh {:.2g} s, fast {:.2g} s)\n",
+        kAcceleratorNames[static_cast<std::size_t>(choice.kind)], choice.quality == BuildQuality::fast ? ", built fast" : "",
+        g.bounded_count(), demand.rays, seconds[0], seconds[1], seconds[2], seconds[3]);
     fmt::print("isa {} ({})\n", name_of(isa_in_use()), o.isa ? "as asked for" : "the best that this machine supports");
     for (const std::string& w : scene->warnings) fmt::print("warning {}\n", w);
     return 0;

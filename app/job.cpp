@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/options.h"
-#include "core/accelerator_cache.h"
+#include "core/accelerator_choice.h"
 
 namespace glint {
 namespace {
@@ -98,7 +98,10 @@ Job prepare_job(const Options& o, const std::string& scene) {
 
     const auto named = o.accelerator_given ? o.accelerator : accelerator_named(s.accelerator);
     job.accelerator_is_auto = !named.has_value();
-    job.accelerator = named.value_or(automatic_accelerator(s, expected_rays(s, job.width, job.height, job.spp)));
+    const int crop_width = o.crop ? (*o.crop)[1] - (*o.crop)[0] : job.width;
+    const int crop_height = o.crop ? (*o.crop)[3] - (*o.crop)[2] : job.height;
+    const RayDemand demand = expected_rays(s, crop_width, crop_height, job.spp, job.threads);
+    job.accelerator = named ? *named : automatic_accelerator(s, within(demand, *s.geometry, o.time));
     return job;
 }
 

@@ -27,7 +27,7 @@ int view(const glint::Options& o) {
     v.settings = job.settings;
     v.display = job.display;
     v.camera = job.camera;
-    if (!job.accelerator_is_auto) v.accelerator = job.accelerator;
+    if (!job.accelerator_is_auto) v.accelerator = job.accelerator.kind;
     v.width = o.width;
     v.height = o.height;
     v.spp = job.spp;

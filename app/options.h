@@ -13,6 +13,7 @@
 #include "accel/accelerator.h"
 #include "accel/isa.h"
 #include "app/option_values.h"
+#include "core/accelerator_choice.h"
 #include "core/scene_io.h"
 #include "core/settings.h"
 
@@ -54,7 +55,7 @@ struct Job {
     RenderSettings settings;
     DisplaySettings display;
     CameraPose camera;
-    AcceleratorKind accelerator = AcceleratorKind::bvh;
+    AcceleratorChoice accelerator;
     bool accelerator_is_auto = true;
     int width = 0, height = 0;
     int spp = 64;

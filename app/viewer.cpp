@@ -48,8 +48,12 @@ private:
     void (*terminate_)(int);
 };
 
-AcceleratorSource source_of(AcceleratorCache& cache, const Scene& scene) {
-    return {automatic_accelerator(scene), [&cache](AcceleratorKind kind) { return cache.request(kind); },
+// A picture that is looked at gets that many samples.
+constexpr double kSamplesLookedAt = 64.0;
+
+AcceleratorSource source_of(AcceleratorCache& cache, const Scene& scene, Extent window, int threads) {
+    const RayDemand demand = expected_rays(scene, window.width, window.height, kSamplesLookedAt, threads);
+    return {automatic_accelerator(scene, demand).kind, [&cache](AcceleratorKind kind) { return cache.request(kind); },
             [&cache](AcceleratorKind kind) { return cache.failed(kind); }};
 }
 
@@ -87,7 +91,8 @@ Viewer::Viewer(const ViewerOptions& options, std::unique_ptr<ViewerWindow> windo
     : cache_(options.scene, options.threads, BuildPriority::background),
       renderer_(std::max(1, options.threads), true),
       session_(options.scene, {options.settings, options.display, options.accelerator, options.spp},
-               options.camera.value_or(options.scene->cameras.at(0)), source_of(cache_, *options.scene)),
+               options.camera.value_or(options.scene->cameras.at(0)),
+               source_of(cache_, *options.scene, window->framebuffer(), options.threads)),
       window_(std::move(window)),
       input_(window_->handle(), session_, [this](Action action) { command(action); }) {}
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <new>
 #include <stdexcept>
 #include <system_error>
@@ -15,43 +14,19 @@
 namespace glint {
 namespace {
 
-// Nanoseconds, from kernels and renders of the built-in and the paper's scenes on Zen 4; only their ratios matter here.
-struct Costs {
-    double build, build_primitive;  // once, and for each primitive
-    double ray, ray_doubling;       // for each ray, and for each doubling of the blocks of eight
-};
-constexpr Costs kGrid{6.0e4, 1700.0, 60.0, 20.0};
-constexpr Costs kBvh{3.0e4, 500.0, 30.0, 10.0};
-// Of the loop: a query, and a test by kind of primitive (triangle, sphere, box, cone).
-constexpr double kLoopQuery = 20.0;
-constexpr std::array<double, 4> kLoopTest{30.0, 13.0, 20.0, 40.0};
+constexpr AcceleratorChoice kFast{AcceleratorKind::bvh, BuildQuality::fast};
+// Builds shorter than this are not worth a first look: fast trees take about half as long, and 50 ms more is not seen.
+constexpr double kFirstLookSeconds = 0.1;
 
-double seconds(const Costs& c, double primitives, double rays) {
-    const double build = c.build + c.build_primitive * primitives;
-    return 1.0e-9 * (build + rays * (c.ray + c.ray_doubling * std::log2(1.0 + primitives / 8.0)));
+std::size_t index_of(AcceleratorChoice choice) {
+    return static_cast<std::size_t>(std::ranges::find(kAcceleratorChoices, choice) - kAcceleratorChoices.begin());
 }
 
 }  // namespace
 
-RayDemand expected_rays(const Scene& scene, int width, int height, int samples_per_pixel) {
-    bool branches = false;
-    for (const Material& m : scene.materials) branches = branches || m.glass || m.has_mirror();
-    const double a_sample = (branches ? 2.0 : 1.0) * (1.0 + static_cast<double>(scene.lights.size()));
-    return {static_cast<double>(width) * height * samples_per_pixel * a_sample};
-}
-
-std::array<double, kAcceleratorNames.size()> estimated_seconds(const Geometry& geometry, const RayDemand& demand) {
-    const auto primitives = static_cast<double>(geometry.bounded_count());
-    double loop = kLoopQuery;
-    for (std::size_t kind = 0; kind < kLoopTest.size(); ++kind) {
-        loop += kLoopTest[kind] * static_cast<double>(geometry.count(static_cast<PrimitiveKind>(kind)));
-    }
-    return {1.0e-9 * demand.rays * loop, seconds(kGrid, primitives, demand.rays), seconds(kBvh, primitives, demand.rays)};
-}
-
-AcceleratorKind automatic_accelerator(const Scene& scene, const RayDemand& demand) {
-    const auto estimate = estimated_seconds(*scene.geometry, demand);
-    return static_cast<AcceleratorKind>(std::min_element(estimate.begin(), estimate.end()) - estimate.begin());
+std::shared_ptr<const AnyAccelerator> AcceleratorCache::built(AcceleratorChoice choice) const {
+    if (choice == kFast && slots_[index_of(AcceleratorKind::bvh)].accelerator) choice = AcceleratorKind::bvh;
+    return slots_[index_of(choice)].accelerator;
 }
 
 AcceleratorCache::AcceleratorCache(std::shared_ptr<const Scene> scene, int threads, BuildPriority priority)
@@ -62,13 +37,13 @@ AcceleratorCache::~AcceleratorCache() {
     for (Slot& slot : slots_) slot.builder.request_stop();
 }
 
-std::shared_ptr<const AnyAccelerator> AcceleratorCache::request(AcceleratorKind kind) {
+std::shared_ptr<const AnyAccelerator> AcceleratorCache::request(AcceleratorChoice choice) {
     const std::lock_guard lock(mutex_);
-    Slot& slot = slots_[static_cast<std::size_t>(kind)];
-    if (slot.started) return slot.accelerator;
+    Slot& slot = slots_[index_of(choice)];
+    if (auto ready = built(choice); ready || slot.started) return ready;
     slot.started = true;
     try {
-        slot.builder = std::jthread([this, &slot, kind](const std::stop_token& stop) { build(slot, kind, stop); });
+        slot.builder = std::jthread([this, &slot, choice](const std::stop_token& stop) { build(slot, choice, stop); });
     } catch (const std::system_error&) {
         // Without this nobody would ever answer those who wait.
         slot.failure = "no thread can be started";
@@ -76,13 +51,13 @@ std::shared_ptr<const AnyAccelerator> AcceleratorCache::request(AcceleratorKind 
     return nullptr;
 }
 
-void AcceleratorCache::build(Slot& slot, AcceleratorKind kind, const std::stop_token& stop) {
+void AcceleratorCache::build(Slot& slot, AcceleratorChoice choice, const std::stop_token& stop) {
     if (priority_ == BuildPriority::background) lower_priority();
     const auto start = std::chrono::steady_clock::now();
-    std::shared_ptr<const AnyAccelerator> built;
+    std::shared_ptr<const AnyAccelerator> made;
     const char* failure = "";
     try {
-        built = build_accelerator(kind, scene_->geometry, parallel_for_on(threads_, stop));
+        made = build_accelerator(choice.kind, scene_->geometry, parallel_for_on(threads_, stop), choice.quality);
     } catch (const std::bad_alloc&) {
         failure = "not enough memory";
     } catch (const std::length_error&) {
@@ -93,31 +68,44 @@ void AcceleratorCache::build(Slot& slot, AcceleratorKind kind, const std::stop_t
         // oneTBB's complaint when the system refuses it a thread.
         failure = "no thread can be started";
     }
+    std::shared_ptr<const AnyAccelerator> superseded;  // freed outside the lock
     const std::lock_guard lock(mutex_);
     slot.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     slot.failure = failure;
-    slot.accelerator = std::move(built);
+    slot.accelerator = std::move(made);
+    if (choice == AcceleratorKind::bvh && slot.accelerator) superseded = std::move(slots_[index_of(kFast)].accelerator);
     built_.notify_all();
 }
 
-std::shared_ptr<const AnyAccelerator> AcceleratorCache::wait(AcceleratorKind kind) {
-    if (auto ready = request(kind)) return ready;
+std::shared_ptr<const AnyAccelerator> AcceleratorCache::request_best_so_far(AcceleratorKind kind, bool may_improve) {
+    const auto build_alone = estimated_seconds(*scene_->geometry, {0.0, threads_});
+    if (kind != AcceleratorKind::bvh || build_alone[index_of(kind)] < kFirstLookSeconds) return request(kind);
+    std::shared_ptr<const AnyAccelerator> first = request(kFast);
+    // One after the other: side by side they would share the cores, and the first look would wait for both.
+    if (first ? !may_improve : !failed(kFast)) return first;
+    std::shared_ptr<const AnyAccelerator> best = request(kind);
+    return best ? best : first;
+}
+
+std::shared_ptr<const AnyAccelerator> AcceleratorCache::wait(AcceleratorChoice choice) {
+    if (auto ready = request(choice)) return ready;
     std::unique_lock lock(mutex_);
-    Slot& slot = slots_[static_cast<std::size_t>(kind)];
-    built_.wait(lock, [&] { return slot.accelerator != nullptr || !slot.failure.empty(); });
-    if (slot.failure.empty()) return slot.accelerator;
-    throw SceneError(
-        fmt::format("{}: no accelerator {}: {}", scene_->name, kAcceleratorNames[static_cast<std::size_t>(kind)], slot.failure));
+    Slot& slot = slots_[index_of(choice)];
+    std::shared_ptr<const AnyAccelerator> ready;
+    built_.wait(lock, [&] { return (ready = built(choice)) != nullptr || !slot.failure.empty(); });
+    if (ready) return ready;
+    throw SceneError(fmt::format("{}: no accelerator {}: {}", scene_->name,
+                                 kAcceleratorNames[static_cast<std::size_t>(choice.kind)], slot.failure));
 }
 
-double AcceleratorCache::build_seconds(AcceleratorKind kind) const {
+double AcceleratorCache::build_seconds(AcceleratorChoice choice) const {
     const std::lock_guard lock(mutex_);
-    return slots_[static_cast<std::size_t>(kind)].seconds;
+    return slots_[index_of(choice)].seconds;
 }
 
-bool AcceleratorCache::failed(AcceleratorKind kind) const {
+bool AcceleratorCache::failed(AcceleratorChoice choice) const {
     const std::lock_guard lock(mutex_);
-    return !slots_[static_cast<std::size_t>(kind)].failure.empty();
+    return !slots_[index_of(choice)].failure.empty();
 }
 
 }  // namespace glint

@@ -1,4 +1,5 @@
-// Accelerators of one scene, each built at most once, in the background, on several threads.
+// Accelerators of one scene, each built at most once, in the background, on several threads; for an impatient caller first a
+// fast one.
 // Knows no renderer. Invariants: request() never waits for a build; the destructor waits no longer than one task of it.
 #pragma once
 
@@ -9,23 +10,9 @@
 #include <string>
 #include <thread>
 
-#include "accel/accelerator.h"
-#include "core/scene.h"
+#include "core/accelerator_choice.h"
 
 namespace glint {
-
-// What a picture asks of an accelerator: rays of all kinds.
-struct RayDemand {
-    double rays = 1.0e6;
-};
-// Samples times what a sample asks for: its camera ray, then a shadow ray to each light; mirrors and glass double it.
-[[nodiscard]] RayDemand expected_rays(const Scene& scene, int width, int height, int samples_per_pixel);
-
-// Seconds of one thread for building and asking, by kind, from counts of primitives; constants measured (core/README.md).
-[[nodiscard]] std::array<double, kAcceleratorNames.size()> estimated_seconds(const Geometry& geometry, const RayDemand& demand);
-
-// The accelerator `auto` means: the one of the least estimate.
-[[nodiscard]] AcceleratorKind automatic_accelerator(const Scene& scene, const RayDemand& demand = {});
 
 // Who else wants the cores while something is built.
 enum class BuildPriority { normal, background };
@@ -40,13 +27,16 @@ public:
     AcceleratorCache& operator=(const AcceleratorCache&) = delete;
 
     // The accelerator if it is built; otherwise null, and its build has been started.
-    std::shared_ptr<const AnyAccelerator> request(AcceleratorKind kind);
+    std::shared_ptr<const AnyAccelerator> request(AcceleratorChoice choice);
+    // As request(), but where a tree of quality takes long to build there is a fast one before it. Once `may_improve`, the better
+    // one is built, too, and comes in its place when it is ready: ask again.
+    std::shared_ptr<const AnyAccelerator> request_best_so_far(AcceleratorKind kind, bool may_improve);
     // As request(), but waits. Throws SceneError when the scene is too large for this accelerator or for the memory.
-    std::shared_ptr<const AnyAccelerator> wait(AcceleratorKind kind);
+    std::shared_ptr<const AnyAccelerator> wait(AcceleratorChoice choice);
     // Seconds the build took; 0 while not built.
-    [[nodiscard]] double build_seconds(AcceleratorKind kind) const;
+    [[nodiscard]] double build_seconds(AcceleratorChoice choice) const;
     // True when the build ended without a result: request() will stay null.
-    [[nodiscard]] bool failed(AcceleratorKind kind) const;
+    [[nodiscard]] bool failed(AcceleratorChoice choice) const;
 
 private:
     struct Slot {
@@ -56,14 +46,17 @@ private:
         std::string failure;  // why there will be no accelerator; empty while there may
         std::jthread builder;
     };
-    void build(Slot& slot, AcceleratorKind kind, const std::stop_token& stop);
+    void build(Slot& slot, AcceleratorChoice choice, const std::stop_token& stop);
+
+    // What is there of this choice: a tree of quality is one for a first look, too. The lock is held.
+    [[nodiscard]] std::shared_ptr<const AnyAccelerator> built(AcceleratorChoice choice) const;
 
     std::shared_ptr<const Scene> scene_;
     int threads_;
     BuildPriority priority_;
     mutable std::mutex mutex_;
     std::condition_variable built_;
-    std::array<Slot, kAcceleratorNames.size()> slots_;
+    std::array<Slot, kAcceleratorChoices.size()> slots_;
 };
 
 }  // namespace glint

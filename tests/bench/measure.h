@@ -7,18 +7,11 @@
 #include <vector>
 
 #include "competitor.h"
+#include "spread.h"
 
 namespace glint::bench {
 
 enum class Clock { wall, cpu };
-
-// The median and the quartiles.
-struct Spread {
-    double median = 0.0, low = 0.0, high = 0.0;
-};
-[[nodiscard]] Spread spread(std::vector<double> values);
-// Of the quotients round by round: what slows both down in a round cancels.
-[[nodiscard]] Spread ratio(const std::vector<double>& a, const std::vector<double>& b);
 
 struct Rates {
     std::string name;  // of the competitor, which the rates outlive

@@ -1,6 +1,8 @@
 // Accelerators are built once, in the background, and handed out again.
 #include "core/accelerator_cache.h"
 
+#include <thread>
+
 #include <gtest/gtest.h>
 
 #include "core/scene_io.h"
@@ -31,25 +33,36 @@ TEST(AcceleratorCache, RequestingDoesNotWaitAndLeavingDoesNotLoseTheBuild) {
     const AcceleratorCache abandoned(scene);
 }
 
-TEST(AcceleratorCache, AutomaticTakesALoopWhereATreeHasNothingToSave) {
-    Scene planes;
-    planes.geometry = std::make_shared<const Geometry>();
-    EXPECT_EQ(automatic_accelerator(planes), AcceleratorKind::none);
-    EXPECT_EQ(automatic_accelerator(*load_scene("builtin:balls,level=2")), AcceleratorKind::bvh);
-    // A tree for a handful of rays costs more than it saves.
-    EXPECT_EQ(automatic_accelerator(*load_scene("builtin:balls,level=4"), {10.0}), AcceleratorKind::none);
+constexpr AcceleratorChoice kFast{AcceleratorKind::bvh, BuildQuality::fast};
+
+TEST(AcceleratorCache, AFastTreeMakesRoomForTheBetterOne) {
+    AcceleratorCache cache(load_scene("builtin:balls,level=3"));
+    std::weak_ptr<const AnyAccelerator> first;
+    {
+        const auto fast = cache.wait(kFast);
+        EXPECT_EQ(cache.wait(kFast), fast);
+        first = fast;
+    }
+    EXPECT_GT(cache.build_seconds(kFast), 0.0);
+    const auto better = cache.wait(AcceleratorKind::bvh);
+    EXPECT_TRUE(first.expired());
+    EXPECT_EQ(cache.request(kFast), better);
+    EXPECT_EQ(cache.wait(kFast), better);
 }
 
-TEST(AcceleratorCache, EstimatesGrowWithRaysAndPrimitives) {
-    const auto few = load_scene("builtin:balls,level=2"), many = load_scene("builtin:balls,level=4");
-    const auto base = estimated_seconds(*few->geometry, {1.0e5});
-    const auto more_rays = estimated_seconds(*few->geometry, {2.0e5}), more = estimated_seconds(*many->geometry, {1.0e5});
-    for (std::size_t i = 0; i < base.size(); ++i) {
-        EXPECT_GT(base[i], 0.0);
-        EXPECT_GT(more_rays[i], base[i]);
-        EXPECT_GT(more[i], base[i]);
-    }
-    EXPECT_EQ(expected_rays(*few, 200, 100, 8).rays, 2.0 * expected_rays(*few, 100, 100, 8).rays);
+TEST(AcceleratorCache, AFirstLookComesBeforeTheBestAndOnlyWhereItPays) {
+    const auto large = load_scene("builtin:soup,n=600000"), small = load_scene("builtin:balls,level=3");
+    AcceleratorCache cache(large);
+    std::shared_ptr<const AnyAccelerator> first;
+    while (!(first = cache.request_best_so_far(AcceleratorKind::bvh, false))) std::this_thread::yield();
+    EXPECT_EQ(cache.request_best_so_far(AcceleratorKind::bvh, true), first) << "now the better one is begun";
+    EXPECT_GT(cache.build_seconds(kFast), 0.0) << "the fast one came first";
+    const auto best = cache.wait(AcceleratorKind::bvh);
+    EXPECT_NE(best, first);
+    EXPECT_EQ(cache.request_best_so_far(AcceleratorKind::bvh, false), best);
+    AcceleratorCache quick(small);
+    while (!quick.request_best_so_far(AcceleratorKind::bvh, false)) std::this_thread::yield();
+    EXPECT_EQ(quick.build_seconds(kFast), 0.0) << "nothing to win";
 }
 
 }  // namespace
