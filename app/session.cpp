@@ -136,12 +136,15 @@ std::optional<Frame> Session::next_frame(const Progress& shown) {
     if (!accelerator || width_ == 0 || height_ == 0) return std::nullopt;
     Inputs wanted{accelerator, camera_.pose(), choices_.settings, width_, height_, choices_.spp, restarts_};
     if (submitted_) {
+        if (accelerator != submitted_->accelerator && kind_of(*accelerator) == kind_of(*submitted_->accelerator))
+            submitted_->accelerator = replacement_ = accelerator;
         if (wanted == *submitted_) return std::nullopt;
         Inputs moved = *submitted_;
         moved.camera = wanted.camera;
         if (wanted == moved && !shown.preview_complete) return std::nullopt;
     }
     submitted_ = std::move(wanted);
+    replacement_ = nullptr;
     Frame frame;
     frame.scene = scene_;
     frame.accelerator = submitted_->accelerator;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "app/fly_camera.h"
@@ -21,9 +22,10 @@ namespace glint {
 
 // Where accelerators come from; in the viewer an AcceleratorCache. None of the calls waits.
 struct AcceleratorSource {
-    AcceleratorKind automatic = AcceleratorKind::bvh;                               // what `auto` means for this scene
-    std::function<std::shared_ptr<const AnyAccelerator>(AcceleratorKind)> request;  // null while it is being built
-    std::function<bool(AcceleratorKind)> failed;                                    // true when it can never be built
+    AcceleratorKind automatic = AcceleratorKind::bvh;  // what `auto` means for this scene
+    // Null while it is being built; may be followed by a better one of its kind.
+    std::function<std::shared_ptr<const AnyAccelerator>(AcceleratorKind)> request;
+    std::function<bool(AcceleratorKind)> failed;  // true when it can never be built
 };
 
 // What the user may choose; everything here may be changed by an action.
@@ -59,6 +61,9 @@ public:
     // was shown, so that a continuous flight shows pictures; everything else is due at once.
     // shown: the progress of the submitted frame when it was last drawn; fresh when it was not drawn yet.
     [[nodiscard]] std::optional<Frame> next_frame(const Progress& shown);
+    // An accelerator of the submitted frame's kind that the frame should go on with, since the last call: a better tree, and
+    // the same bits, so no frame is due for it.
+    [[nodiscard]] std::shared_ptr<const AnyAccelerator> take_replacement() { return std::exchange(replacement_, nullptr); }
     // Whether the workers should rest: paused, and the preview of the latest frame is complete.
     [[nodiscard]] bool resting(const Progress& progress) const;
     // Whether an accelerator is still being built, so that next_frame() should be asked again soon.
@@ -103,6 +108,7 @@ private:
     std::uint64_t restarts_ = 0;
     std::map<int, Action> held_;
     std::optional<Inputs> submitted_;
+    std::shared_ptr<const AnyAccelerator> replacement_;
     bool building_ = false;
     std::vector<std::string> messages_;
 };

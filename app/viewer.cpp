@@ -51,9 +51,14 @@ private:
 // A picture that is looked at gets that many samples.
 constexpr double kSamplesLookedAt = 64.0;
 
-AcceleratorSource source_of(AcceleratorCache& cache, const Scene& scene, Extent window, int threads) {
+// Whoever flies at once sees no whole pass; the better tree is begun after so many seconds all the same.
+constexpr double kPatience = 2.0;
+
+// looked_at: whether the first picture is there, and the cores are free to build a better tree.
+AcceleratorSource source_of(AcceleratorCache& cache, const Scene& scene, Extent window, int threads, const bool& looked_at) {
     const RayDemand demand = expected_rays(scene, window.width, window.height, kSamplesLookedAt, threads);
-    return {automatic_accelerator(scene, demand).kind, [&cache](AcceleratorKind kind) { return cache.request(kind); },
+    return {automatic_accelerator(scene, demand).kind,
+            [&cache, &looked_at](AcceleratorKind kind) { return cache.request_best_so_far(kind, looked_at); },
             [&cache](AcceleratorKind kind) { return cache.failed(kind); }};
 }
 
@@ -71,6 +76,7 @@ private:
     // The progress that the screen shows of the submitted frame; fresh while it still shows an older one.
     [[nodiscard]] Progress shown_of_frame() const { return shown_.generation == generation_ ? shown_ : Progress{}; }
 
+    bool looked_at_ = false;  // the first picture has been there
     // The order matters at the end: the window disappears first, then threads are waited for.
     AcceleratorCache cache_;
     Renderer renderer_;
@@ -92,7 +98,7 @@ Viewer::Viewer(const ViewerOptions& options, std::unique_ptr<ViewerWindow> windo
       renderer_(std::max(1, options.threads), true),
       session_(options.scene, {options.settings, options.display, options.accelerator, options.spp},
                options.camera.value_or(options.scene->cameras.at(0)),
-               source_of(cache_, *options.scene, window->framebuffer(), options.threads)),
+               source_of(cache_, *options.scene, window->framebuffer(), options.threads, looked_at_)),
       window_(std::move(window)),
       input_(window_->handle(), session_, [this](Action action) { command(action); }) {}
 
@@ -167,7 +173,7 @@ double Viewer::seconds_to_wait(const Progress& progress, double now) const {
 }
 
 void Viewer::run() {
-    double last = glfwGetTime();
+    double last = glfwGetTime(), first_frame = 0.0;
     bool rested = false;
     while (!window_->should_close() && caught_signal == 0) {
         const double now = glfwGetTime();
@@ -177,8 +183,11 @@ void Viewer::run() {
         draw(renderer_.progress(), now);
         if (std::optional<Frame> frame = session_.next_frame(shown_of_frame()))
             generation_ = renderer_.restart(std::move(*frame));
+        if (generation_ != 0 && first_frame == 0.0) first_frame = now;
+        if (auto better = session_.take_replacement()) renderer_.replace_accelerator(generation_, std::move(better));
         for (const std::string& line : session_.take_messages()) fmt::print(stderr, "glint: {}\n", line);
         const Progress progress = renderer_.progress();
+        looked_at_ = looked_at_ || progress.spp_min > 0 || (first_frame > 0.0 && now - first_frame > kPatience);
         if (progress.out_of_memory && !too_large_)
             fmt::print(stderr, "glint: not enough memory for a picture of this size; still showing the one before\n");
         too_large_ = progress.out_of_memory;

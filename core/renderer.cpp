@@ -207,6 +207,20 @@ std::uint64_t Renderer::restart(Frame frame) {
     return generation;
 }
 
+bool Renderer::replace_accelerator(std::uint64_t generation, std::shared_ptr<const AnyAccelerator> accelerator) {
+    std::shared_ptr<const Order> old;  // freed outside the lock
+    std::unique_lock lock(state_->mutex);
+    old = state_->order;
+    if (old == nullptr || old->generation != generation) return false;
+    lock.unlock();
+    auto order = std::make_shared<Order>(*old);
+    order->frame.accelerator = std::move(accelerator);
+    lock.lock();
+    // Tiles in progress end with the accelerator they began with; their results count as ever.
+    if (state_->order == old) state_->order = std::move(order);
+    return order == nullptr;
+}
+
 void Renderer::set_paused(bool paused) {
     {
         const std::lock_guard lock(state_->mutex);

@@ -50,6 +50,8 @@ public:
     // Replaces the frame: plans it on the caller's thread (a walk over the lights, and over balls and boxes where there is
     // glass), then swaps it in. Waits for no worker, touches no pixel. Returns the new generation.
     std::uint64_t restart(Frame frame);
+    // Goes on with another accelerator of the same scene if `generation` is still the frame's: same bits, so nothing restarts.
+    bool replace_accelerator(std::uint64_t generation, std::shared_ptr<const AnyAccelerator> accelerator);
     void set_paused(bool paused);
     [[nodiscard]] Progress progress() const;
     // The mean of the samples so far as linear radiance, at the frame's crop size. Where a pixel has no sample yet, its
