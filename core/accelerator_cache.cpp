@@ -56,17 +56,22 @@ void AcceleratorCache::build(Slot& slot, AcceleratorChoice choice, const std::st
     const auto start = std::chrono::steady_clock::now();
     std::shared_ptr<const AnyAccelerator> made;
     const char* failure = "";
+    const auto build_on = [&](int threads) {
+        made = build_accelerator(choice.kind, scene_->geometry, parallel_for_on(threads, stop), choice.quality);
+    };
     try {
-        made = build_accelerator(choice.kind, scene_->geometry, parallel_for_on(threads_, stop), choice.quality);
+        try {
+            build_on(threads_);
+        } catch (const std::runtime_error&) {
+            // oneTBB's complaint when the system refuses it a thread, mostly for want of memory; alone it may go on.
+            build_on(1);
+        }
     } catch (const std::bad_alloc&) {
         failure = "not enough memory";
     } catch (const std::length_error&) {
         failure = "too many primitives";
     } catch (const Abandoned&) {
         failure = "abandoned";
-    } catch (const std::runtime_error&) {
-        // oneTBB's complaint when the system refuses it a thread.
-        failure = "no thread can be started";
     }
     std::shared_ptr<const AnyAccelerator> superseded;  // freed outside the lock
     const std::lock_guard lock(mutex_);
