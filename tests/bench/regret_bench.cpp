@@ -19,7 +19,7 @@ using namespace glint;
 using namespace glint::bench;
 
 constexpr std::array<std::string_view, kAcceleratorChoices.size()> kChoiceNames{"none", "grid", "bvh", "fast"};
-constexpr double kWorstAllowed = 1.10, kMedianAllowed = 1.02;
+constexpr double kWorstAllowed = 1.10, kMedianAllowed = 1.02, kDoubtful = 1.05;
 
 struct Arguments {
     std::vector<std::string> scenes;
@@ -56,6 +56,17 @@ std::vector<double> totals(const CandidateCost& cost) {
     std::vector<double> sums;
     for (std::size_t i = 0; i < cost.build.size(); ++i) sums.push_back(cost.build[i] + cost.trace[i]);
     return sums;
+}
+
+void join(DemandCost& all, const DemandCost& more) {
+    for (std::size_t c = 0; c < all.by.size(); ++c) {
+        const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+            to.insert(to.end(), from.begin(), from.end());
+        };
+        append(all.by[c].build, more.by[c].build);
+        append(all.by[c].trace, more.by[c].trace);
+        append(all.by[c].wall, more.by[c].wall);
+    }
 }
 
 // The regret is formed round by round, so that what slows a round down cancels.
@@ -140,7 +151,12 @@ int main(int argc, char** argv) try {
             source.starts_with("builtin:") ? source.substr(8) : std::filesystem::path(source).filename().string();
         for (DemandCost& cost : measure_demands(scene, demands, a.effort)) {
             if (a.calibrate) measured.push_back({scene, cost});
-            const Row row = judge(name, *scene, std::move(cost));
+            Row row = judge(name, *scene, cost);
+            // A row that stands out gets more rounds, and all of them count: other work on the machine looks like regret.
+            for (int again = 0; again < 3 && row.regret > kDoubtful; ++again) {
+                join(cost, measure_demands(scene, {cost.demand}, a.effort).front());
+                row = judge(name, *scene, cost);
+            }
             print(row);
             regrets.push_back(row.regret);
             json.push_back(to_json(row, *scene));
