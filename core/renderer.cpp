@@ -65,6 +65,8 @@ struct Renderer::State {
         running = on;
     }
     [[nodiscard]] bool failed() const { return order != nullptr && failed_generation == order->generation; }
+    // Every pixel shows this frame. The last samples may overtake a preview whose worker was held up.
+    [[nodiscard]] bool covered() const { return previews_left == 0 || finished(); }
     [[nodiscard]] bool finished() const {
         return order != nullptr && queue_generation == order->generation && tiles_left == 0 && !failed();
     }
@@ -241,7 +243,7 @@ Progress Renderer::progress() const {
     p.out_of_memory = s.failed();
     if (s.queue_generation != s.order->generation || p.out_of_memory) return p;
     p.finished = s.finished();
-    p.preview_complete = s.previews_left == 0;
+    p.preview_complete = s.covered();
     p.spp_min = s.order->frame.spp;
     for (std::size_t i = 0; i < s.framebuffer->tile_count(); ++i) {
         const int n = s.framebuffer->samples(i, p.generation);
@@ -261,7 +263,7 @@ double Renderer::relative_standard_error() const {
 bool Renderer::resolve(Image& image) const {
     const State& s = *state_;
     std::unique_lock lock(s.mutex);
-    if (s.order == nullptr || s.queue_generation != s.order->generation || s.previews_left > 0 || s.failed()) return false;
+    if (s.order == nullptr || s.queue_generation != s.order->generation || !s.covered() || s.failed()) return false;
     const std::uint64_t shown = s.order->generation;
     const std::shared_ptr<const Framebuffer> framebuffer = s.framebuffer;
     lock.unlock();

@@ -89,14 +89,14 @@ FirstLook look_at(const std::string& source, int threads, int changes) {
     look.load = since(start);
     look.scene = source.substr(source.find_last_of('/') + 1);
     look.primitives = scene->geometry->bounded_count();
-    const AcceleratorKind kind = automatic_accelerator(*scene, expected_rays(*scene, kWidth, kHeight, kSpp));
-    look.accelerator = kAcceleratorNames[static_cast<std::size_t>(kind)];
+    const AcceleratorChoice choice = automatic_accelerator(*scene, expected_rays(*scene, kWidth, kHeight, kSpp));
+    look.accelerator = kAcceleratorNames[static_cast<std::size_t>(choice.kind)];
 
     start = Clock::now();
     AcceleratorCache cache(scene, threads);
     RenderSettings settings;
     settings.features = features_of(*scene);
-    const Frame frame = bench::frame_of(scene, cache.wait(kind), settings, kWidth, kHeight, kSpp);
+    const Frame frame = bench::frame_of(scene, cache.wait(choice), settings, kWidth, kHeight, kSpp);
     look.build = since(start);
 
     start = Clock::now();
