@@ -27,9 +27,27 @@ Hit query(const Ray& ray, const Geometry& g, float magnitude) noexcept {
 }  // namespace
 
 BruteForce::BruteForce(std::shared_ptr<const Geometry> geometry)
-    : geometry_(std::move(geometry)), magnitude_(geometry_->bounds().magnitude()) {}
+    : geometry_(std::move(geometry)), magnitude_(geometry_->own_bounds().magnitude()) {
+    for (const Prototype& prototype : geometry_->prototypes) prototypes_.emplace_back(prototype.geometry);
+}
 
-Hit BruteForce::closest_hit(const Ray& ray) const noexcept { return query<false>(ray, *geometry_, magnitude_); }
-bool BruteForce::occluded(const Ray& ray) const noexcept { return query<true>(ray, *geometry_, magnitude_).found(); }
+Hit BruteForce::closest_hit(const Ray& ray) const noexcept {
+    Hit best = query<false>(ray, *geometry_, magnitude_);
+    for (const Instance& instance : geometry_->instances) {
+        Hit hit = prototypes_[instance.prototype].closest_hit(object_ray(instance.object_from_world, ray, best.t));
+        if (!hit.found()) continue;
+        hit.primitive = instance.first_id + geometry_->prototypes[instance.prototype].geometry->rank(hit.primitive);
+        if (hit.t < best.t || hit.primitive < best.primitive) best = hit;
+    }
+    return best;
+}
+
+bool BruteForce::occluded(const Ray& ray) const noexcept {
+    if (query<true>(ray, *geometry_, magnitude_).found()) return true;
+    for (const Instance& instance : geometry_->instances) {
+        if (prototypes_[instance.prototype].occluded(object_ray(instance.object_from_world, ray, ray.t_max))) return true;
+    }
+    return false;
+}
 
 }  // namespace glint

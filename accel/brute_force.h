@@ -22,6 +22,7 @@ public:
 private:
     std::shared_ptr<const Geometry> geometry_;
     float magnitude_;
+    std::vector<BruteForce> prototypes_;
 };
 
 }  // namespace glint

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "accel/instance_level.h"
+
 namespace glint {
 
 const BvhKernels& bvh_kernels(Isa isa) {
@@ -39,19 +41,24 @@ Bvh::Bvh(std::shared_ptr<const Geometry> geometry, const ParallelFor& parallel_f
       tree_(build_bvh(*geometry_, parallel_for, quality)),
       view_(tree_.view(*geometry_)),
       has_planes_(!geometry_->planes.empty()),
-      kernels_(&bvh_kernels(isa)) {}
+      kernels_(&bvh_kernels(isa)),
+      instances_(InstanceLevel<Bvh>::build(geometry_, parallel_for, isa, [&](std::shared_ptr<const Geometry> prototype) {
+          return Bvh(std::move(prototype), parallel_for, isa, quality);
+      })) {}
 
 Hit Bvh::closest_hit(const Ray& ray) const noexcept {
     Hit best;
     best.t = ray.t_max;
     if (has_planes_) best = begin_query(PreparedRay(ray, view_.magnitude), *geometry_);
     if (view_.units != nullptr) kernels_->closest(view_, ray, best);
+    if (instances_ != nullptr) instances_->closest_hit(ray, best);
     return best;
 }
 
 bool Bvh::occluded(const Ray& ray) const noexcept {
     if (has_planes_ && begin_query(PreparedRay(ray, view_.magnitude), *geometry_).found()) return true;
-    return view_.units != nullptr && kernels_->occluded(view_, ray);
+    if (view_.units != nullptr && kernels_->occluded(view_, ray)) return true;
+    return instances_ != nullptr && instances_->occluded(ray);
 }
 
 void Bvh::closest_hits(const RayBatch& rays, HitBatch& hits) const noexcept {
@@ -64,6 +71,7 @@ void Bvh::closest_hits(const RayBatch& rays, HitBatch& hits) const noexcept {
         std::fill_n(hits.primitive, rays.count, kNoPrimitive);
     }
     if (view_.units != nullptr) kernels_->closest_batch(view_, rays, hits);
+    if (instances_ != nullptr) instances_->closest_hits(rays, hits);
 }
 
 void Bvh::occluded(const RayBatch& rays, OccludedBatch& result) const noexcept {
@@ -72,13 +80,22 @@ void Bvh::occluded(const RayBatch& rays, OccludedBatch& result) const noexcept {
             has_planes_ && begin_query(PreparedRay(rays[i], view_.magnitude), *geometry_).found();
     }
     if (view_.units != nullptr) kernels_->occluded_batch(view_, rays, result.data());
+    if (instances_ != nullptr) instances_->occluded(rays, result);
 }
 
-std::size_t Bvh::memory_bytes() const { return tree_.units.size() * sizeof(BvhTree::Unit); }
+std::size_t Bvh::memory_bytes() const {
+    return tree_.units.size() * sizeof(BvhTree::Unit) + (instances_ != nullptr ? instances_->memory_bytes() : 0);
+}
 
 TraversalCounts Bvh::count_traversal(const RayBatch& rays) const noexcept {
     TraversalCounts counts;
     for (int i = 0; i < rays.count && view_.units != nullptr; ++i) kernels_->count_closest(view_, rays[i], counts);
+    for (int i = 0; i < rays.count && instances_ != nullptr; ++i) {
+        Hit best;
+        best.t = rays.t_max[i];
+        if (view_.units != nullptr) kernels_->closest(view_, rays[i], best);
+        instances_->count_traversal(rays[i], best, counts);
+    }
     return counts;
 }
 

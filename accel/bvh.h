@@ -18,6 +18,9 @@ namespace glint {
 // Levels of nodes; the depth of the traversal's stack hangs on it.
 constexpr int kMaxBvhDepth = 64;
 
+template <class A>
+class InstanceLevel;
+
 struct BvhTree {
     struct alignas(kBvhUnit) Unit {
         std::byte bytes[kBvhUnit];
@@ -62,6 +65,7 @@ private:
     BvhView view_;
     bool has_planes_ = false;
     const BvhKernels* kernels_;
+    std::shared_ptr<const InstanceLevel<Bvh>> instances_;  // null where there are none
 };
 
 }  // namespace glint

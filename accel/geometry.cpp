@@ -1,5 +1,9 @@
 #include "accel/geometry.h"
 
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
 namespace glint {
 namespace {
 
@@ -25,6 +29,9 @@ Aabb ball_bounds(glm::vec3 center, float radius) {
 }
 
 }  // namespace
+
+Prototype::Prototype(std::shared_ptr<const Geometry> shared)
+    : geometry(std::move(shared)), bounds(geometry->own_bounds()), count(static_cast<std::uint32_t>(geometry->bounded_count())) {}
 
 std::size_t Geometry::count(PrimitiveKind kind) const {
     switch (kind) {
@@ -56,10 +63,73 @@ Aabb Geometry::bounds(PrimitiveId id) const {
     return box;
 }
 
-Aabb Geometry::bounds() const {
+Aabb Geometry::own_bounds() const {
     Aabb box;
     for (const PrimitiveId id : bounded_ids()) box.grow(bounds(id));
     return box;
+}
+
+Aabb Geometry::bounds() const {
+    Aabb box = own_bounds();
+    for (const Instance& instance : instances) box.grow(instance_bounds(instance));
+    return box;
+}
+
+bool Geometry::place(std::uint32_t prototype, const AffineMap& world_from_object) {
+    const std::uint32_t count = prototypes[prototype].count;
+    const std::optional<AffineMap> map = object_from_world(world_from_object);
+    if (!map || count == 0) return false;
+    PrimitiveId first = kFirstInstancedId;
+    if (!instances.empty()) first = instances.back().first_id + prototypes[instances.back().prototype].count;
+    const Instance instance{*map, prototype, first};
+    if (!(instance_bounds(instance).magnitude() <= kLargestCoordinate)) return false;
+    if (count > kNoPrimitive - first) throw std::length_error("too many primitives in instances");
+    instances.push_back(instance);
+    return true;
+}
+
+Located Geometry::locate(PrimitiveId id) const {
+    if (!is_instanced(id)) return {this, nullptr, id};
+    const auto behind = std::upper_bound(instances.begin(), instances.end(), id,
+                                         [](PrimitiveId value, const Instance& i) { return value < i.first_id; });
+    const Instance& instance = *(behind - 1);
+    const Geometry& prototype = *prototypes[instance.prototype].geometry;
+    std::uint32_t index = id - instance.first_id;
+    for (const auto kind : {PrimitiveKind::triangle, PrimitiveKind::sphere, PrimitiveKind::box}) {
+        const auto n = static_cast<std::uint32_t>(prototype.count(kind));
+        if (index < n) return {&prototype, &instance, make_id(kind, index)};
+        index -= n;
+    }
+    return {&prototype, &instance, make_id(PrimitiveKind::cone, index)};
+}
+
+std::uint32_t Geometry::rank(PrimitiveId id) const {
+    std::uint32_t before = 0;
+    for (std::uint32_t kind = 0; kind < static_cast<std::uint32_t>(kind_of(id)); ++kind)
+        before += static_cast<std::uint32_t>(count(static_cast<PrimitiveKind>(kind)));
+    return before + index_of(id);
+}
+
+std::size_t Geometry::seen_count() const {
+    std::size_t n = bounded_count();
+    for (const Instance& instance : instances) n += prototypes[instance.prototype].count;
+    return n;
+}
+
+Aabb Geometry::instance_bounds(const Instance& instance) const {
+    const Aabb& box = prototypes[instance.prototype].bounds;
+    const AffineMap map = inverse(instance.object_from_world);
+    const glm::dvec3 lo(box.lo), hi(box.hi);
+    const glm::dvec3 centre = map.point(0.5 * lo + 0.5 * hi), half = 0.5 * hi - 0.5 * lo;
+    // What the inverse may be wrong by: see object_from_world() for its linear part; its shift is a sum of products.
+    const double slack =
+        map.growth() * (0x1p-28 * static_cast<double>(box.magnitude()) + 0x1p-50 * instance.object_from_world.shift());
+    glm::dvec3 reach;
+    for (int i = 0; i < 3; ++i) {
+        const auto& r = map.row[i];
+        reach[i] = std::abs(r[0]) * half.x + std::abs(r[1]) * half.y + std::abs(r[2]) * half.z + slack;
+    }
+    return rounded_outwards(centre - reach, centre + reach);
 }
 
 std::vector<PrimitiveId> Geometry::bounded_ids() const {

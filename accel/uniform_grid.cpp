@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "accel/instance_level.h"
+
 namespace glint {
 namespace {
 
@@ -94,6 +96,14 @@ const GridKernels& grid_kernels_for(Isa isa) {
 UniformGrid::UniformGrid(std::shared_ptr<const Geometry> geometry, const ParallelFor& parallel_for, Isa isa,
                          const GridDensity& density)
     : geometry_(std::move(geometry)), has_planes_(!geometry_->planes.empty()), kernels_(&grid_kernels_for(isa)) {
+    build_cells(parallel_for, density);
+    const auto make = [&](std::shared_ptr<const Geometry> prototype) {
+        return UniformGrid(std::move(prototype), parallel_for, isa, density);
+    };
+    instances_ = InstanceLevel<UniformGrid>::build(geometry_, parallel_for, isa, make);
+}
+
+void UniformGrid::build_cells(const ParallelFor& parallel_for, const GridDensity& density) {
     std::vector<BoundedPrimitive> primitives = bounded_primitives(*geometry_, parallel_for);
     if (primitives.empty()) return;
     Aabb all;
@@ -112,7 +122,7 @@ UniformGrid::UniformGrid(std::shared_ptr<const Geometry> geometry, const Paralle
     cells_ = build_grid_cells(blocks_, primitives, padding_, density, parallel_for);
 }
 
-Hit UniformGrid::closest_hit(const Ray& ray) const noexcept {
+Hit UniformGrid::closest_own(const Ray& ray) const noexcept {
     Hit best;
     best.t = ray.t_max;
     if (has_planes_) best = begin_query(PreparedRay(ray, magnitude_), *geometry_);
@@ -120,9 +130,29 @@ Hit UniformGrid::closest_hit(const Ray& ray) const noexcept {
     return best;
 }
 
-bool UniformGrid::occluded(const Ray& ray) const noexcept {
+bool UniformGrid::occluded_by_own(const Ray& ray) const noexcept {
     if (has_planes_ && begin_query(PreparedRay(ray, magnitude_), *geometry_).found()) return true;
     return !cells_.levels.empty() && kernels_->occluded(view(), ray);
+}
+
+Hit UniformGrid::closest_hit(const Ray& ray) const noexcept {
+    Hit best = closest_own(ray);
+    if (instances_ != nullptr) instances_->closest_hit(ray, best);
+    return best;
+}
+
+bool UniformGrid::occluded(const Ray& ray) const noexcept {
+    return occluded_by_own(ray) || (instances_ != nullptr && instances_->occluded(ray));
+}
+
+void UniformGrid::closest_hits(const RayBatch& rays, HitBatch& hits) const noexcept {
+    for (int i = 0; i < rays.count; ++i) hits.set(i, closest_own(rays[i]));
+    if (instances_ != nullptr) instances_->closest_hits(rays, hits);
+}
+
+void UniformGrid::occluded(const RayBatch& rays, OccludedBatch& result) const noexcept {
+    for (int i = 0; i < rays.count; ++i) result[static_cast<std::size_t>(i)] = occluded_by_own(rays[i]);
+    if (instances_ != nullptr) instances_->occluded(rays, result);
 }
 
 GridView UniformGrid::view() const noexcept {
@@ -140,7 +170,8 @@ GridView UniformGrid::view() const noexcept {
 }
 
 std::size_t UniformGrid::memory_bytes() const {
-    return blocks_.units.capacity() * kBvhUnit + cells_.levels.capacity() * sizeof(GridLevel) +
+    const std::size_t of_instances = instances_ != nullptr ? instances_->memory_bytes() : 0;
+    return of_instances + blocks_.units.capacity() * kBvhUnit + cells_.levels.capacity() * sizeof(GridLevel) +
            (cells_.cells.capacity() + cells_.lists.capacity() + large_.capacity()) * sizeof(std::uint32_t);
 }
 
@@ -160,8 +191,9 @@ glm::dvec3 UniformGrid::corner(glm::ivec3 cell) const {
 
 TraversalCounts UniformGrid::count_traversal(const RayBatch& rays) const noexcept {
     TraversalCounts counts;
-    if (cells_.levels.empty()) return counts;
-    for (int i = 0; i < rays.count; ++i) kernels_->count_closest(view(), rays[i], counts);
+    for (int i = 0; i < rays.count && !cells_.levels.empty(); ++i) kernels_->count_closest(view(), rays[i], counts);
+    for (int i = 0; i < rays.count && instances_ != nullptr; ++i)
+        instances_->count_traversal(rays[i], closest_own(rays[i]), counts);
     return counts;
 }
 

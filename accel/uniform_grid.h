@@ -15,6 +15,9 @@
 
 namespace glint {
 
+template <class A>
+class InstanceLevel;
+
 class UniformGrid {
 public:
     explicit UniformGrid(std::shared_ptr<const Geometry> geometry, const ParallelFor& parallel_for = serial_for,
@@ -22,8 +25,8 @@ public:
 
     [[nodiscard]] Hit closest_hit(const Ray& ray) const noexcept;
     [[nodiscard]] bool occluded(const Ray& ray) const noexcept;
-    void closest_hits(const RayBatch& rays, HitBatch& hits) const noexcept { closest_hits_one_by_one(*this, rays, hits); }
-    void occluded(const RayBatch& rays, OccludedBatch& result) const noexcept { occluded_one_by_one(*this, rays, result); }
+    void closest_hits(const RayBatch& rays, HitBatch& hits) const noexcept;
+    void occluded(const RayBatch& rays, OccludedBatch& result) const noexcept;
     [[nodiscard]] std::size_t memory_bytes() const;
     // Of the outermost level; 0 when there is nothing in it.
     [[nodiscard]] glm::ivec3 resolution() const;
@@ -38,6 +41,9 @@ public:
     [[nodiscard]] TraversalCounts count_traversal(const RayBatch& rays) const noexcept;
 
 private:
+    void build_cells(const ParallelFor& parallel_for, const GridDensity& density);
+    [[nodiscard]] Hit closest_own(const Ray& ray) const noexcept;
+    [[nodiscard]] bool occluded_by_own(const Ray& ray) const noexcept;
     [[nodiscard]] GridView view() const noexcept;
 
     std::shared_ptr<const Geometry> geometry_;
@@ -48,6 +54,7 @@ private:
     double padding_ = 0.0;
     bool has_planes_ = false;
     const GridKernels* kernels_;
+    std::shared_ptr<const InstanceLevel<UniformGrid>> instances_;  // null where there are none
 };
 
 }  // namespace glint

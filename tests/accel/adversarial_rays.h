@@ -18,10 +18,22 @@ public:
         : geometry_(geometry), ids_(geometry.bounded_ids()), corners_(cell_corners), random_(seed) {
         bounds_ = geometry.bounds();
         if (bounds_.empty()) bounds_ = Aabb{glm::vec3(-1.0f), glm::vec3(1.0f)};
+        for (const Prototype& prototype : geometry.prototypes)
+            in_prototypes_.emplace_back(*prototype.geometry, cell_corners, seed);
     }
 
     // Goes through the kinds in turn; every fourth ray gets a finite t_max, every third another length of direction.
+    // Where there are instances, three of four rays are aimed in the space of one of them.
     Ray next() {
+        if (geometry_.instances.empty() || random_.below(4) == 0) return next_in_world();
+        const Instance& instance = geometry_.instances[random_.below(geometry_.instances.size())];
+        const AffineMap out = inverse(instance.object_from_world);
+        const Ray ray = in_prototypes_[instance.prototype].next_in_world();
+        return {glm::vec3(out.point(glm::dvec3(ray.origin))), glm::vec3(out.vector(glm::dvec3(ray.direction))), ray.t_max};
+    }
+
+private:
+    Ray next_in_world() {
         static constexpr std::array kKinds{
             &AdversarialRays::anywhere,        &AdversarialRays::through_vertex, &AdversarialRays::through_edge,
             &AdversarialRays::along_axis,      &AdversarialRays::from_face,      &AdversarialRays::grazing,
@@ -37,8 +49,6 @@ public:
         ++count_;
         return ray;
     }
-
-private:
     [[nodiscard]] float diagonal() const { return glm::length(bounds_.size()); }
     bool coin() { return random_.below(2) == 0; }
     PrimitiveId any_id() { return ids_[random_.below(ids_.size())]; }
@@ -195,6 +205,7 @@ private:
     Random random_;
     Aabb bounds_;
     std::size_t count_ = 0;
+    std::vector<AdversarialRays> in_prototypes_;
 };
 
 }  // namespace glint

@@ -10,6 +10,7 @@
 #include "tests/accel/adversarial_rays.h"
 #include "tests/accel/adversarial_scenes.h"
 #include "tests/accel/hit_report.h"
+#include "tests/accel/instance_scenes.h"
 
 namespace glint {
 
@@ -192,6 +193,8 @@ TEST_P(Adversarial, SameHitForBundles) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Adversarial, testing::ValuesIn(kAdversarialScenes),
+                         [](const testing::TestParamInfo<AdversarialScene>& s) { return std::string(s.param.name); });
+INSTANTIATE_TEST_SUITE_P(Instances, Adversarial, testing::ValuesIn(kInstanceScenes),
                          [](const testing::TestParamInfo<AdversarialScene>& s) { return std::string(s.param.name); });
 
 }  // namespace
