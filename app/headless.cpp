@@ -120,7 +120,8 @@ nlohmann::json stats(const Job& job, const Options& o, const Progress& p, double
             {"build_ms", build_seconds * 1e3},
             {"build_quality", job.accelerator.quality == BuildQuality::fast ? "fast" : "quality"},
             {"accelerator_bytes", accelerator_bytes},
-            {"primitives", job.scene->geometry->bounded_count() + job.scene->geometry->planes.size()},
+            {"primitives", job.scene->geometry->seen_count() + job.scene->geometry->planes.size()},
+            {"instances", job.scene->geometry->instances.size()},
             {"rays", {{"camera", r.camera}, {"shadow", r.shadow}, {"reflection", r.reflection}, {"refraction", r.refraction}}},
             {"mrays_per_s", static_cast<double>(r.total()) / seconds * 1e-6},
             {"non_finite_samples", r.non_finite},
@@ -208,6 +209,12 @@ int run_info(const Options& o) {
                g.cones.size(), g.planes.size());
     fmt::print("vertices {}\nmaterials {}\nlights {}\ncameras {}\n", g.vertices.size(), scene->materials.size(),
                scene->lights.size(), scene->cameras.size());
+    if (!g.instances.empty()) {
+        std::size_t stored = 0;
+        for (const Prototype& prototype : g.prototypes) stored += prototype.count;
+        fmt::print("instances {} of {} meshes ({} primitives stored, {} seen)\n", g.instances.size(), g.prototypes.size(), stored,
+                   g.seen_count() - g.bounded_count());
+    }
     const Aabb box = g.bounds();
     if (!box.empty()) {
         fmt::print("bounds {:g} {:g} {:g} to {:g} {:g} {:g}\n", box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z);
@@ -227,7 +234,7 @@ int run_info(const Options& o) {
     fmt::print(
         "accelerator {}{} ({} bounded primitives, {:.2g} rays: none {:.2g} s, grid {:.2g} s, bvh {:.2g} s, fast {:.2g} s)\n",
         kAcceleratorNames[static_cast<std::size_t>(choice.kind)], choice.quality == BuildQuality::fast ? ", built fast" : "",
-        g.bounded_count(), demand.rays, seconds[0], seconds[1], seconds[2], seconds[3]);
+        g.seen_count(), demand.rays, seconds[0], seconds[1], seconds[2], seconds[3]);
     fmt::print("isa {} ({})\n", name_of(isa_in_use()), o.isa ? "as asked for" : "the best that this machine supports");
     for (const std::string& w : scene->warnings) fmt::print("warning {}\n", w);
     return 0;

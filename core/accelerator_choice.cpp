@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -21,12 +22,31 @@ constexpr std::array<Costs, kAcceleratorChoices.size() - 1> kCosts{{{25.0e3, 650
 constexpr double kLoopRay = 85.0;
 constexpr std::array<double, 4> kLoopTest{9.5, 4.0, 5.0, 20.0};
 
-double seconds(const Costs& c, double triangles, double other, const RayDemand& demand) {
-    const double n = triangles + other, threads = std::max(1, demand.threads);
-    const double building = c.build_triangle * triangles + c.build_other * other;
+// Primitives as the model counts them.
+struct Counts {
+    double triangles = 0.0, other = 0.0;
+
+    void add(const Geometry& geometry, double times = 1.0) {
+        const auto n = static_cast<double>(geometry.triangles.size());
+        triangles += times * n;
+        other += times * (static_cast<double>(geometry.bounded_count()) - n);
+    }
+};
+
+double seconds(const Costs& c, const Counts& built, const Counts& seen, const RayDemand& demand) {
+    const double n = seen.triangles + seen.other, threads = std::max(1, demand.threads);
+    const double building = c.build_triangle * built.triangles + c.build_other * built.other;
     const double doublings =
-        std::log2(1.0 + n / 8.0) / std::max(1.0, n) * (c.doubling_triangles * triangles + c.doubling_other * other);
+        std::log2(1.0 + n / 8.0) / std::max(1.0, n) * (c.doubling_triangles * seen.triangles + c.doubling_other * seen.other);
     return 1.0e-9 * (c.build + building * (c.serial + (1.0 - c.serial) / threads) + demand.rays * (c.ray + doublings) / threads);
+}
+
+double loop_tests(const Geometry& geometry) {
+    double loop = 0.0;
+    for (std::size_t kind = 0; kind < kLoopTest.size(); ++kind) {
+        loop += kLoopTest[kind] * static_cast<double>(geometry.count(static_cast<PrimitiveKind>(kind)));
+    }
+    return loop;
 }
 
 }  // namespace
@@ -40,15 +60,23 @@ RayDemand expected_rays(const Scene& scene, int width, int height, double sample
 }
 
 std::array<double, kAcceleratorChoices.size()> estimated_seconds(const Geometry& geometry, const RayDemand& demand) {
-    double loop = kLoopRay;
-    for (std::size_t kind = 0; kind < kLoopTest.size(); ++kind) {
-        loop += kLoopTest[kind] * static_cast<double>(geometry.count(static_cast<PrimitiveKind>(kind)));
+    double loop = kLoopRay + loop_tests(geometry);
+    Counts built, seen;
+    built.add(geometry);
+    seen.add(geometry);
+    // A mesh is built once, and each of its instances as one box; rays meet them all.
+    std::vector<double> uses(geometry.prototypes.size());
+    for (const Instance& instance : geometry.instances) ++uses[instance.prototype];
+    built.other += static_cast<double>(geometry.instances.size());
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+        const Geometry& mesh = *geometry.prototypes[i].geometry;
+        built.add(mesh);
+        seen.add(mesh, uses[i]);
+        loop += uses[i] * (kLoopRay + loop_tests(mesh));
     }
     std::array<double, kAcceleratorChoices.size()> estimate{1.0e-9 * demand.rays * loop / std::max(1, demand.threads)};
-    const auto triangles = static_cast<double>(geometry.triangles.size());
-    const double other = static_cast<double>(geometry.bounded_count()) - triangles;
     for (std::size_t i = 0; i < kCosts.size(); ++i) {
-        estimate[i + 1] = seconds(kCosts[i], triangles, other, demand);
+        estimate[i + 1] = seconds(kCosts[i], built, seen, demand);
     }
     return estimate;
 }

@@ -20,5 +20,7 @@ enum class GlassPiece { all, ball, slab, nested, shell };
 [[nodiscard]] SceneBuilder knot(int n);
 [[nodiscard]] SceneBuilder stadium(int n);
 [[nodiscard]] SceneBuilder soup(int n);
+// n instances.
+[[nodiscard]] SceneBuilder crowd(int n);
 
 }  // namespace glint::builtin

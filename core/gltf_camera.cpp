@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/seen_vertices.h"
+
 namespace glint {
 namespace {
 
@@ -59,7 +61,7 @@ std::optional<CameraPose> gltf_camera(const tinygltf::Camera& camera, const glm:
     return pose;
 }
 
-CameraPose framing_camera(const std::vector<glm::vec3>& vertices, const Aabb& bounds) {
+CameraPose framing_camera(const Geometry& geometry, const Aabb& bounds) {
     CameraPose pose;
     if (bounds.empty()) return pose;
     // Models face +z (glTF 2.0, section 3.4), so the viewer stands there, a little to the right and above.
@@ -72,11 +74,11 @@ CameraPose framing_camera(const std::vector<glm::vec3>& vertices, const Aabb& bo
     const double half_width = half_height * 4.0 / 3.0;
     const glm::dvec3 center = 0.5 * (glm::dvec3(bounds.lo) + glm::dvec3(bounds.hi));
     double distance = 0.0;
-    for (const glm::vec3 v : vertices) {
+    for_each_seen_vertex(geometry, [&](glm::vec3 v) {
         const glm::dvec3 p = glm::dvec3(v) - center;
         const double across = std::max(std::abs(glm::dot(p, right)) / half_width, std::abs(glm::dot(p, up)) / half_height);
         distance = std::max(distance, kMargin * across + glm::dot(p, back));
-    }
+    });
     pose.target = glm::vec3(center);
     pose.eye = glm::vec3(center + back * std::max(distance, length(center) * 0x1p-16));
     return pose;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include <tiny_gltf.h>
 #include <glm/glm.hpp>
@@ -19,6 +18,6 @@ namespace glint {
                                                     const Aabb& bounds, GltfReport& report);
 
 // All vertices from three quarters, a little from above; they just fit into pictures from 4:3 on.
-[[nodiscard]] CameraPose framing_camera(const std::vector<glm::vec3>& vertices, const Aabb& bounds);
+[[nodiscard]] CameraPose framing_camera(const Geometry& geometry, const Aabb& bounds);
 
 }  // namespace glint

@@ -11,9 +11,13 @@
 namespace glint {
 namespace {
 
-// Instances are baked, so a small file can ask for any number of triangles. 2^26 take about 3 GB with their vertices.
+// What is baked is stored for each use, so a small file can ask for any number of triangles. 2^26 take about 3 GB with their
+// vertices.
 constexpr std::uint64_t kMaxTriangles = std::uint64_t{1} << 26;
 constexpr std::uint64_t kMaxPrimitives = std::uint64_t{1} << 22;
+constexpr std::uint64_t kMaxPlacements = std::uint64_t{1} << 24;  // some 3 GB, placed
+// All uses of a mesh together may bake so many triangles: half a megabyte, and traced faster than through instances.
+constexpr std::uint64_t kMostBaked = 4096;
 
 std::uint64_t triangle_count(int mode, std::uint64_t corners) {
     if (mode == TINYGLTF_MODE_TRIANGLES) return corners / 3;
@@ -84,7 +88,7 @@ struct GltfMeshReader::Part {
 };
 
 GltfMeshReader::GltfMeshReader(const tinygltf::Model& model, SceneBuilder& builder, GltfReport& report)
-    : model_(model), builder_(builder), report_(report), views_(model.accessors.size()) {
+    : model_(model), builder_(builder), report_(report), views_(model.accessors.size()), uses_(model.meshes.size()) {
     for (const tinygltf::Material& m : model.materials) materials_.push_back(builder.add_material(gltf_material(m, report)));
 }
 
@@ -100,23 +104,54 @@ std::uint32_t GltfMeshReader::material(int index) {
     return *default_material_;
 }
 
-void GltfMeshReader::reserve(int mesh_index) {
-    const tinygltf::Mesh& mesh = model_.meshes.at(static_cast<std::size_t>(mesh_index));
-    primitives_ += mesh.primitives.size();
-    if (primitives_ > kMaxPrimitives)
-        report_.fail(fmt::format("more than {} mesh primitives, instances counted", kMaxPrimitives));
-    for (const tinygltf::Primitive& primitive : mesh.primitives) {
-        const auto position = primitive.attributes.find("POSITION");
-        if (primitive.mode < TINYGLTF_MODE_TRIANGLES || position == primitive.attributes.end()) continue;
-        const int corners = primitive.indices >= 0 ? primitive.indices : position->second;
-        const std::uint64_t count = triangle_count(primitive.mode, model_.accessors.at(static_cast<std::size_t>(corners)).count);
-        if (count > kMaxTriangles - triangles_)
+void GltfMeshReader::announce(int mesh_index, const glm::dmat4& world_from_mesh) {
+    if (++placements_ > kMaxPlacements) report_.fail(fmt::format("more than {} meshes, instances counted", kMaxPlacements));
+    Uses& uses = uses_.at(static_cast<std::size_t>(mesh_index));
+    if (uses.placeable + uses.others == 0) {
+        const tinygltf::Mesh& mesh = model_.meshes.at(static_cast<std::size_t>(mesh_index));
+        for (const tinygltf::Primitive& primitive : mesh.primitives) {
+            const auto position = primitive.attributes.find("POSITION");
+            if (primitive.mode < TINYGLTF_MODE_TRIANGLES || position == primitive.attributes.end()) continue;
+            const int corners = primitive.indices >= 0 ? primitive.indices : position->second;
+            uses.triangles += triangle_count(primitive.mode, model_.accessors.at(static_cast<std::size_t>(corners)).count);
+        }
+    }
+    ++(object_from_world(affine_map(world_from_mesh)) ? uses.placeable : uses.others);
+}
+
+void GltfMeshReader::plan() {
+    std::uint64_t triangles = 0, primitives = 0;
+    for (std::size_t i = 0; i < uses_.size(); ++i) {
+        Uses& uses = uses_[i];
+        uses.shared = uses.placeable > 1 && uses.placeable > kMostBaked / std::max<std::uint64_t>(uses.triangles, 1);
+        const std::uint64_t copies = uses.shared ? 1 + uses.others : uses.placeable + uses.others;
+        if (copies == 0) continue;
+        primitives += copies * model_.meshes[i].primitives.size();
+        if (primitives > kMaxPrimitives)
+            report_.fail(fmt::format("more than {} mesh primitives, instances counted", kMaxPrimitives));
+        if (uses.triangles > (kMaxTriangles - triangles) / copies)
             report_.fail(fmt::format("more than {} triangles, instances counted", kMaxTriangles));
-        triangles_ += count;
+        triangles += copies * uses.triangles;
     }
 }
 
-void GltfMeshReader::add(int mesh_index, const glm::dmat4& world_from_mesh) {
+void GltfMeshReader::add(int mesh, const glm::dmat4& world_from_mesh) {
+    const bool shared = uses_.at(static_cast<std::size_t>(mesh)).shared;
+    shared&& object_from_world(affine_map(world_from_mesh)) ? place(mesh, world_from_mesh) : bake(mesh, world_from_mesh);
+}
+
+void GltfMeshReader::place(int mesh, const glm::dmat4& world_from_mesh) {
+    Uses& uses = uses_[static_cast<std::size_t>(mesh)];
+    if (!uses.prototype) {
+        builder_.begin_prototype();
+        bake(mesh, glm::dmat4(1.0));
+        uses.prototype = builder_.end_prototype();
+    }
+    const std::uint32_t stored = builder_.geometry().prototypes[*uses.prototype].count;
+    if (stored > 0 && !builder_.place(*uses.prototype, world_from_mesh)) not_finite_ += stored;
+}
+
+void GltfMeshReader::bake(int mesh_index, const glm::dmat4& world_from_mesh) {
     const tinygltf::Mesh& mesh = model_.meshes.at(static_cast<std::size_t>(mesh_index));
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
         add_primitive(mesh.primitives[i], fmt::format("meshes[{}].primitives[{}]", mesh_index, i), world_from_mesh);

@@ -1,6 +1,7 @@
-// Meshes of a glTF file as triangles of the scene, baked into world space once per node that shows them.
-// Knows no nodes. Invariant: every index is checked against its vertex count before it is used; all triangles of a
-// file together, and all uses of meshes, stay below fixed limits, so nested instances cannot exhaust the memory.
+// Meshes of a glTF file as triangles of the scene: baked into world space for each node that shows them, or, where that would
+// repeat many, stored once and placed.
+// Knows no nodes. Invariant: every index is checked against its vertex count before it is used; all triangles stored, and all
+// uses of meshes, stay below fixed limits, so nested instances cannot exhaust the memory.
 #pragma once
 
 #include <array>
@@ -22,9 +23,10 @@ public:
     // All three must outlive the reader. The materials of `model` are added to `builder` at once.
     GltfMeshReader(const tinygltf::Model& model, SceneBuilder& builder, GltfReport& report);
 
-    // Announces one node's use of meshes[mesh]; SceneError when all uses together are too many. To be called for every use
-    // before the first add(), so that a file which asks for too much is refused before any work is done.
-    void reserve(int mesh);
+    // Announces one node's use of meshes[mesh]; to be called for every use, then plan(), before the first add(). SceneError when
+    // all uses together are too many, before any work is done.
+    void announce(int mesh, const glm::dmat4& world_from_mesh);
+    void plan();
     // One node's use of meshes[mesh]. A mirroring transform turns the winding round, so fronts stay fronts.
     void add(int mesh, const glm::dmat4& world_from_mesh);
     // Warns of the triangles that were dropped, with their numbers.
@@ -32,9 +34,17 @@ public:
 
 private:
     struct Part;  // what one primitive is made of
+    struct Uses {
+        std::uint64_t placeable = 0, others = 0;  // how many of each
+        std::uint64_t triangles = 0;              // of the mesh, as announced
+        bool shared = false;                      // stored once
+        std::optional<std::uint32_t> prototype;
+    };
 
     const AccessorView& view(int accessor);
     std::uint32_t material(int index);
+    void place(int mesh, const glm::dmat4& world_from_mesh);
+    void bake(int mesh, const glm::dmat4& world_from_mesh);
     void add_primitive(const tinygltf::Primitive& primitive, const std::string& place, const glm::dmat4& world_from_mesh);
     void add_triangles(const Part& part);
 
@@ -44,7 +54,8 @@ private:
     std::vector<std::optional<AccessorView>> views_;  // made at first use: a thousand instances check an accessor once
     std::vector<std::uint32_t> materials_;
     std::optional<std::uint32_t> default_material_;
-    std::uint64_t triangles_ = 0, primitives_ = 0;  // announced so far
+    std::vector<Uses> uses_;                        // by mesh
+    std::uint64_t placements_ = 0;                  // announced so far
     std::uint64_t not_finite_ = 0, zero_area_ = 0;  // dropped
 };
 

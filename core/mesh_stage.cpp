@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/seen_vertices.h"
+
 namespace glint {
 namespace {
 
@@ -29,12 +31,12 @@ View frame_vertices(const SceneBuilder& builder, const Aabb& box, double aspect,
     view.right = {std::cos(a), 0.0, -std::sin(a)};
     view.up = glm::cross(view.back, view.right);
     const double high = kFilled * std::tan(0.5 * kViewAngle * kRadians), wide = high * aspect;
-    for (const glm::vec3& vertex : builder.geometry().vertices) {
-        if (!inside(box, vertex)) continue;  // belongs to no triangle
+    for_each_seen_vertex(builder.geometry(), [&](glm::vec3 vertex) {
+        if (!inside(box, vertex)) return;  // belongs to no triangle
         const glm::dvec3 d = glm::dvec3(vertex) - view.target;
         const double aside = std::max(std::abs(glm::dot(d, view.right)) / wide, std::abs(glm::dot(d, view.up)) / high);
         view.distance = std::max(view.distance, glm::dot(d, view.back) + aside);
-    }
+    });
     // A mesh of spheres alone, say, has no vertices.
     if (!(view.distance > 0.0)) view.distance = glm::length(glm::dvec3(box.size())) / (2.0 * high);
     return view;

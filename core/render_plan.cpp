@@ -30,29 +30,44 @@ void spread_over_square(Light& light, glm::vec3 up, float half) {
     light.edge2 = glm::vec3(e2 * (2.0 * half));
 }
 
+struct Enclosing {
+    double size;
+    std::uint32_t material;
+};
+
+// Adds the glass balls and boxes of one geometry around the eye, which is given in its space; `scale` is what a length of it
+// may grow to in the world.
+void add_enclosing(const Geometry& g, const Surfaces& surfaces, const std::vector<Material>& materials, glm::dvec3 eye,
+                   double scale, std::vector<Enclosing>& around) {
+    const auto& sphere_material = surfaces.material_of[static_cast<std::size_t>(PrimitiveKind::sphere)];
+    for (std::size_t i = 0; i < g.spheres.size(); ++i) {
+        const glm::dvec3 d = eye - glm::dvec3(g.spheres[i].center);
+        const double r = g.spheres[i].radius;
+        if (materials[sphere_material[i]].glass && glm::dot(d, d) < r * r)
+            around.push_back({scale * 2.0 * r, sphere_material[i]});
+    }
+    const auto& box_material = surfaces.material_of[static_cast<std::size_t>(PrimitiveKind::box)];
+    for (std::size_t i = 0; i < g.boxes.size(); ++i) {
+        const glm::dvec3 lo(g.boxes[i].lo), hi(g.boxes[i].hi);
+        const bool inside = glm::all(glm::lessThan(lo, eye)) && glm::all(glm::lessThan(eye, hi));
+        if (materials[box_material[i]].glass && inside) {
+            const glm::dvec3 size = hi - lo;
+            around.push_back({scale * std::max(size.x, std::max(size.y, size.z)), box_material[i]});
+        }
+    }
+}
+
 // The glass balls and boxes around the eye, outermost first. Meshes are taken as seen from outside.
 MediumStack medium_at(const Scene& scene, glm::vec3 eye) {
-    struct Enclosing {
-        float size;
-        std::uint32_t material;
-    };
     std::vector<Enclosing> around;
     const Geometry& g = *scene.geometry;
-    const auto& sphere_material = scene.material_of[static_cast<std::size_t>(PrimitiveKind::sphere)];
-    for (std::size_t i = 0; i < g.spheres.size(); ++i) {
-        const glm::dvec3 d = glm::dvec3(eye) - glm::dvec3(g.spheres[i].center);
-        const double r = g.spheres[i].radius;
-        if (scene.materials[sphere_material[i]].glass && glm::dot(d, d) < r * r)
-            around.push_back({2.0f * g.spheres[i].radius, sphere_material[i]});
-    }
-    const auto& box_material = scene.material_of[static_cast<std::size_t>(PrimitiveKind::box)];
-    for (std::size_t i = 0; i < g.boxes.size(); ++i) {
-        const Box& b = g.boxes[i];
-        const bool inside = glm::all(glm::lessThan(b.lo, eye)) && glm::all(glm::lessThan(eye, b.hi));
-        if (scene.materials[box_material[i]].glass && inside) {
-            const glm::vec3 size = b.hi - b.lo;
-            around.push_back({std::max(size.x, std::max(size.y, size.z)), box_material[i]});
-        }
+    add_enclosing(g, scene, scene.materials, glm::dvec3(eye), 1.0, around);
+    for (const Instance& instance : g.instances) {
+        const Geometry& prototype = *g.prototypes[instance.prototype].geometry;
+        if (prototype.spheres.empty() && prototype.boxes.empty()) continue;
+        const AffineMap& map = instance.object_from_world;
+        add_enclosing(prototype, scene.prototypes[instance.prototype], scene.materials, map.point(glm::dvec3(eye)),
+                      inverse(map).growth(), around);
     }
     std::stable_sort(around.begin(), around.end(), [](const Enclosing& a, const Enclosing& b) { return a.size > b.size; });
     MediumStack stack;

@@ -24,7 +24,7 @@ bool SceneBuilder::add(const Sphere& s, std::uint32_t material) {
     if (!valid(s)) return false;
     check_room(geometry_.spheres.size());
     geometry_.spheres.push_back(s);
-    scene_.material_of[slot(PrimitiveKind::sphere)].push_back(material);
+    surfaces_.material_of[slot(PrimitiveKind::sphere)].push_back(material);
     return true;
 }
 
@@ -32,7 +32,7 @@ bool SceneBuilder::add(const Box& b, std::uint32_t material) {
     if (!valid(b)) return false;
     check_room(geometry_.boxes.size());
     geometry_.boxes.push_back(b);
-    scene_.material_of[slot(PrimitiveKind::box)].push_back(material);
+    surfaces_.material_of[slot(PrimitiveKind::box)].push_back(material);
     return true;
 }
 
@@ -40,7 +40,7 @@ bool SceneBuilder::add(const Cone& c, std::uint32_t material) {
     if (!valid(c)) return false;
     check_room(geometry_.cones.size());
     geometry_.cones.push_back(c);
-    scene_.material_of[slot(PrimitiveKind::cone)].push_back(material);
+    surfaces_.material_of[slot(PrimitiveKind::cone)].push_back(material);
     return true;
 }
 
@@ -48,15 +48,15 @@ bool SceneBuilder::add(const Plane& p, std::uint32_t material) {
     if (!valid(p)) return false;
     check_room(geometry_.planes.size());
     geometry_.planes.push_back(p);
-    scene_.material_of[slot(PrimitiveKind::plane)].push_back(material);
+    surfaces_.material_of[slot(PrimitiveKind::plane)].push_back(material);
     return true;
 }
 
 void SceneBuilder::reserve(std::size_t vertices, std::size_t triangles) {
     geometry_.vertices.reserve(geometry_.vertices.size() + vertices);
-    scene_.normals.reserve(scene_.normals.size() + vertices);
+    surfaces_.normals.reserve(surfaces_.normals.size() + vertices);
     geometry_.triangles.reserve(geometry_.triangles.size() + triangles);
-    auto& materials = scene_.material_of[slot(PrimitiveKind::triangle)];
+    auto& materials = surfaces_.material_of[slot(PrimitiveKind::triangle)];
     materials.reserve(materials.size() + triangles);
 }
 
@@ -64,7 +64,7 @@ std::uint32_t SceneBuilder::add_vertex(glm::vec3 position, glm::vec3 normal) {
     check_room(geometry_.vertices.size());
     any_normal_ = any_normal_ || normal != glm::vec3(0.0f);
     geometry_.vertices.push_back(position);
-    scene_.normals.push_back(normal);
+    surfaces_.normals.push_back(normal);
     return static_cast<std::uint32_t>(geometry_.vertices.size() - 1);
 }
 
@@ -73,16 +73,50 @@ bool SceneBuilder::add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t 
     if (!valid_triangle(v[a], v[b], v[c])) return false;
     check_room(geometry_.triangles.size());
     geometry_.triangles.push_back({a, b, c});
-    scene_.material_of[slot(PrimitiveKind::triangle)].push_back(material);
+    surfaces_.material_of[slot(PrimitiveKind::triangle)].push_back(material);
     return true;
+}
+
+struct SceneBuilder::World {
+    Geometry geometry;
+    Surfaces surfaces;
+    bool any_normal;
+};
+
+void SceneBuilder::close() {
+    if (!any_normal_) surfaces_.normals.clear();
+    surfaces_.normals.shrink_to_fit();
+    geometry_.vertices.shrink_to_fit();
+}
+
+void SceneBuilder::begin_prototype() {
+    world_ = std::make_shared<World>(World{std::exchange(geometry_, {}), std::exchange(surfaces_, {}), any_normal_});
+    any_normal_ = false;
+}
+
+std::uint32_t SceneBuilder::end_prototype() {
+    close();
+    Geometry prototype = std::exchange(geometry_, std::move(world_->geometry));
+    scene_.prototypes.push_back(std::exchange(surfaces_, std::move(world_->surfaces)));
+    any_normal_ = world_->any_normal;
+    world_.reset();
+    geometry_.prototypes.emplace_back(std::make_shared<const Geometry>(std::move(prototype)));
+    return static_cast<std::uint32_t>(geometry_.prototypes.size() - 1);
+}
+
+bool SceneBuilder::place(std::uint32_t prototype, const glm::dmat4& world_from_object) {
+    try {
+        return geometry_.place(prototype, affine_map(world_from_object));
+    } catch (const std::length_error&) {
+        throw SceneError("more than 1610612735 primitives in instances");
+    }
 }
 
 std::shared_ptr<const Scene> SceneBuilder::finish() {
     if (scene_.materials.empty()) scene_.materials.emplace_back();
     if (scene_.cameras.empty()) scene_.cameras.emplace_back();
-    if (!any_normal_) scene_.normals.clear();
-    scene_.normals.shrink_to_fit();
-    geometry_.vertices.shrink_to_fit();
+    close();
+    static_cast<Surfaces&>(scene_) = std::move(surfaces_);
     scene_.geometry = std::make_shared<const Geometry>(std::move(geometry_));
     auto scene = std::make_shared<const Scene>(std::move(scene_));
     *this = SceneBuilder();

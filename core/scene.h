@@ -1,6 +1,7 @@
 // A scene as loaded: geometry, materials, lights, environment, cameras, and what the file asked of the renderer.
 // Knows no settings, window or accelerator. Immutable once built; shared as shared_ptr<const Scene>.
-// Invariant: material_of[kind] has one entry below materials.size() for each primitive of that kind.
+// Invariant: material_of[kind] has one entry below materials.size() for each primitive of that kind, in the world and in each
+// prototype.
 #pragma once
 
 #include <array>
@@ -20,13 +21,23 @@ namespace glint {
 
 enum class Transfer { linear, srgb };
 
-struct Scene {
+// What the primitives of one Geometry look like, by its ids.
+struct Surfaces {
+    // Per vertex, for smooth shading; empty, or as long as the geometry's vertices, (0,0,0) where a vertex has none.
+    std::vector<glm::vec3> normals;
+    std::array<std::vector<std::uint32_t>, kPrimitiveKinds> material_of;
+
+    [[nodiscard]] std::uint32_t material(PrimitiveId id) const {
+        return material_of[static_cast<std::size_t>(kind_of(id))][index_of(id)];
+    }
+};
+
+// Its own surfaces are those of the world's primitives.
+struct Scene : Surfaces {
     std::string name;  // file name or builtin:NAME, for titles and reports
     std::shared_ptr<const Geometry> geometry = std::make_shared<Geometry>();
-    // Per vertex, for smooth shading; empty, or as long as geometry->vertices, (0,0,0) where a vertex has none.
-    std::vector<glm::vec3> normals;
+    std::vector<Surfaces> prototypes;  // of geometry->prototypes
     std::vector<Material> materials;
-    std::array<std::vector<std::uint32_t>, kPrimitiveKinds> material_of;
     std::vector<Light> lights;
     Environment environment;
     std::vector<CameraPose> cameras;  // at least one
@@ -39,8 +50,12 @@ struct Scene {
 
     // The scene's up, unit length: as the format says, or that of its first camera.
     [[nodiscard]] glm::vec3 world_up() const { return glm::normalize(up.value_or(cameras.front().up)); }
+    [[nodiscard]] const Surfaces& surfaces(const Located& at) const {
+        return at.instance != nullptr ? prototypes[at.instance->prototype] : *this;
+    }
     [[nodiscard]] const Material& material(PrimitiveId id) const {
-        return materials[material_of[static_cast<std::size_t>(kind_of(id))][index_of(id)]];
+        const Located at = geometry->locate(id);
+        return materials[surfaces(at).material(at.id)];
     }
 };
 
@@ -64,6 +79,12 @@ public:
     bool add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
     // Room for that many more, where a reader knows: growing step by step would double the peak of memory.
     void reserve(std::size_t vertices, std::size_t triangles);
+    // What is added between the two, without planes, is stored once and seen only where place() puts it. Returns its number.
+    void begin_prototype();
+    std::uint32_t end_prototype();
+    // False where the map has no inverse to rely on (see Geometry::place()). Throws SceneError when the ids run out.
+    bool place(std::uint32_t prototype, const glm::dmat4& world_from_object);
+    // What has been added so far; between begin_prototype() and end_prototype() that of the prototype.
     [[nodiscard]] const Geometry& geometry() const { return geometry_; }
     // Fills geometry, normals, materials and material_of of scene(); the builder is empty afterwards.
     [[nodiscard]] std::shared_ptr<const Scene> finish();
@@ -72,8 +93,15 @@ public:
 
 private:
     Scene scene_;
+    // Of the world, or of the prototype that is being added.
     Geometry geometry_;
+    Surfaces surfaces_;
     bool any_normal_ = false;
+    // The world's, while a prototype is being added.
+    struct World;
+    std::shared_ptr<World> world_;
+
+    void close();
 };
 
 }  // namespace glint

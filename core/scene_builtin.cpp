@@ -28,6 +28,7 @@ struct Recipe {
 };
 
 constexpr int kMaxSoupTriangles = 10000000;
+constexpr int kMaxCrowd = 150000;  // as many as there are ids for
 constexpr std::string_view kPieces[] = {"all", "ball", "slab", "nested", "shell"};
 
 const std::vector<Recipe>& recipes() {
@@ -55,6 +56,9 @@ const std::vector<Recipe>& recipes() {
         {{"soup", "n=1..10000000 (100000)", "n triangles of random place, size and orientation in a cube"},
          {"n", 1, kMaxSoupTriangles, 100000},
          builtin::soup},
+        {{"crowd", "n=1..150000 (1000)", "n knots as a sunflower's seeds: five meshes of 10000 triangles, stored once"},
+         {"n", 1, kMaxCrowd, 1000},
+         builtin::crowd},
     };
     return table;
 }

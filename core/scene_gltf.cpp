@@ -7,24 +7,25 @@
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
-#include <glm/gtc/quaternion.hpp>
 
 #include "core/gltf_camera.h"
 #include "core/gltf_check.h"
 #include "core/gltf_files.h"
+#include "core/gltf_instancing.h"
 #include "core/gltf_light.h"
 #include "core/gltf_mesh.h"
 #include "core/gltf_report.h"
 #include "core/scene_io.h"
+#include "core/seen_vertices.h"
 
 namespace glint {
 namespace {
 
 constexpr std::size_t kMaxNodeDepth = 512;
 
-constexpr std::array<std::string_view, 6> kSupportedExtensions{
-    "KHR_lights_punctual", "KHR_materials_unlit",        "KHR_materials_emissive_strength",
-    "KHR_materials_ior",   "KHR_materials_transmission", "KHR_mesh_quantization"};
+constexpr std::array<std::string_view, 7> kSupportedExtensions{
+    "EXT_mesh_gpu_instancing", "KHR_lights_punctual",        "KHR_materials_unlit",  "KHR_materials_emissive_strength",
+    "KHR_materials_ior",       "KHR_materials_transmission", "KHR_mesh_quantization"};
 
 bool supported(std::string_view extension) {
     return std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) != kSupportedExtensions.end();
@@ -89,18 +90,14 @@ glm::dmat4 local_transform(const tinygltf::Node& node, int index, const GltfRepo
         for (std::size_t i = 0; i < 16; ++i) m[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = node.matrix[i];
         return m;
     }
-    if (node.rotation.size() == 4) {
-        const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-        const double norm = glm::length(q);
-        // Written with few digits it is not quite of unit length; as nothing at all it is no rotation.
-        if (!(norm > 0.0) || !std::isfinite(norm)) report.fail(fmt::format("nodes[{}].rotation is not a rotation", index));
-        m = glm::mat4_cast(q / norm);
-    }
-    if (node.scale.size() == 3) {
-        for (int i = 0; i < 3; ++i) m[i] *= node.scale[static_cast<std::size_t>(i)];
-    }
-    if (node.translation.size() == 3) m[3] = glm::dvec4(node.translation[0], node.translation[1], node.translation[2], 1.0);
-    return m;
+    const auto three = [](const std::vector<double>& v, double otherwise) {
+        return v.size() == 3 ? glm::dvec3(v[0], v[1], v[2]) : glm::dvec3(otherwise);
+    };
+    const std::vector<double>& r = node.rotation;
+    const glm::dvec4 rotation = r.size() == 4 ? glm::dvec4(r[0], r[1], r[2], r[3]) : glm::dvec4(0.0, 0.0, 0.0, 1.0);
+    const auto parent_from_node = transform_of(three(node.translation, 0.0), rotation, three(node.scale, 1.0));
+    if (!parent_from_node) report.fail(fmt::format("nodes[{}].rotation is not a rotation", index));
+    return *parent_from_node;
 }
 
 // Where the walk begins: the scene that the file chooses, else its first, else every node that is no one's child.
@@ -161,14 +158,14 @@ struct PlacedCamera {
 void add_cameras(const tinygltf::Model& model, std::vector<PlacedCamera> placed, SceneBuilder& builder, GltfReport& report) {
     std::sort(placed.begin(), placed.end(), [](const PlacedCamera& a, const PlacedCamera& b) { return a.node < b.node; });
     Aabb bounds;
-    for (const glm::vec3 v : builder.geometry().vertices) bounds.grow(v);  // only vertices of triangles were stored
+    for_each_seen_vertex(builder.geometry(), [&](glm::vec3 v) { bounds.grow(v); });  // only vertices of triangles were stored
     auto& cameras = builder.scene().cameras;
     for (const PlacedCamera& p : placed) {
         const auto pose = gltf_camera(model.cameras.at(static_cast<std::size_t>(p.camera)), p.world_from_camera, bounds, report);
         if (pose) cameras.push_back(*pose);
     }
     if (!cameras.empty()) return;
-    cameras.push_back(framing_camera(builder.geometry().vertices, bounds));
+    cameras.push_back(framing_camera(builder.geometry(), bounds));
     report.warn("no camera: the whole scene is framed");
 }
 
@@ -188,18 +185,21 @@ std::shared_ptr<const Scene> reader::read_gltf(const std::filesystem::path& path
     GltfMeshReader meshes(model, builder, report);
     std::vector<PlacedCamera> cameras;
     const std::vector<int> roots = root_nodes(model, report);
-    walk(model, roots, report, [&](int index, const glm::dmat4&) {
+    walk(model, roots, report, [&](int index, const glm::dmat4& world_from_node) {
         const int mesh = model.nodes[static_cast<std::size_t>(index)].mesh;
-        if (mesh >= 0) meshes.reserve(mesh);
+        if (mesh < 0) return;
+        for_each_placement(model, index, world_from_node, report, [&](const glm::dmat4& m) { meshes.announce(mesh, m); });
     });
+    meshes.plan();
     walk(model, roots, report, [&](int index, const glm::dmat4& world_from_node) {
         const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];
-        if (node.mesh >= 0) meshes.add(node.mesh, world_from_node);
+        if (node.mesh >= 0)
+            for_each_placement(model, index, world_from_node, report, [&](const glm::dmat4& m) { meshes.add(node.mesh, m); });
         if (node.camera >= 0) cameras.push_back({index, node.camera, world_from_node});
         read_gltf_light(model, index, world_from_node, scene, report);
     });
     meshes.report_dropped();
-    if (builder.geometry().triangles.empty()) report.warn("nothing to show: no triangle");
+    if (builder.geometry().seen_count() == 0) report.warn("nothing to show: no triangle");
     add_cameras(model, std::move(cameras), builder, report);
     finish_gltf_light(scene, report);
     scene.warnings = report.take_warnings();
