@@ -196,7 +196,13 @@ void expect_complete(const Scene& scene) {
     for (std::uint32_t kind = 0; kind < kPrimitiveKinds; ++kind) {
         EXPECT_EQ(scene.material_of[kind].size(), scene.geometry->count(static_cast<PrimitiveKind>(kind)));
         for (const std::uint32_t m : scene.material_of[kind]) ASSERT_LT(m, scene.materials.size());
+        for (std::size_t i = 0; i < scene.prototypes.size(); ++i) {
+            const auto& materials = scene.prototypes[i].material_of[kind];
+            EXPECT_EQ(materials.size(), scene.geometry->prototypes[i].geometry->count(static_cast<PrimitiveKind>(kind)));
+            for (const std::uint32_t m : materials) ASSERT_LT(m, scene.materials.size());
+        }
     }
+    EXPECT_EQ(scene.prototypes.size(), scene.geometry->prototypes.size());
     ASSERT_EQ(scene.cameras.size(), 1u);
     EXPECT_GT(scene.cameras.front().target_distance(), 0.0f);
     EXPECT_FALSE(scene.lights.empty());
