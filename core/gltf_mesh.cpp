@@ -15,7 +15,7 @@ namespace {
 // vertices.
 constexpr std::uint64_t kMaxTriangles = std::uint64_t{1} << 26;
 constexpr std::uint64_t kMaxPrimitives = std::uint64_t{1} << 22;
-constexpr std::uint64_t kMaxPlacements = std::uint64_t{1} << 24;  // some 3 GB, placed
+constexpr std::uint64_t kMaxPlacements = std::uint64_t{1} << 22;  // some 0.7 GB, placed
 // All uses of a mesh together may bake so many triangles: half a megabyte, and traced faster than through instances.
 constexpr std::uint64_t kMostBaked = 4096;
 
