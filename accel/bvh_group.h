@@ -52,6 +52,7 @@ struct Span {
 // Eight boxes against a span, made ready once.
 class SpanTest {
 public:
+    SpanTest() noexcept = default;
     explicit SpanTest(const Span& s) noexcept
         : rows_{2 * s.kx, 2 * s.ky, 2 * s.kz},
           slope_{Float8::set(s.hi_x.slope), Float8::set(s.lo_x.slope), Float8::set(s.hi_y.slope), Float8::set(s.lo_y.slope)},

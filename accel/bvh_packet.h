@@ -14,6 +14,7 @@ namespace glint::GLINT_ISA {
 // Slabs of sixteen rays against one box.
 class GroupSlabs {
 public:
+    GroupSlabs() noexcept = default;
     GroupSlabs(const Group& g, Float16 padding) noexcept {
         const Float16 zero = Float16::set(0.0f);
         Float16 largest = max(abs(g.d[0]), max(abs(g.d[1]), abs(g.d[2])));

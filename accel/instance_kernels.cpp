@@ -1,7 +1,6 @@
 #include "accel/instance_kernels.h"
 
-#include "accel/bvh_prepare.h"
-#include "accel/bvh_single.h"
+#include "accel/instance_groups.h"
 
 // Compiled once per instruction set (CMakeLists.txt says with which flags).
 namespace glint::GLINT_ISA {
@@ -45,8 +44,6 @@ unsigned enter_boxes(const BoxBlock& block, const BoxRay& ray, float limit, Floa
     return enter_rows<1, 3>(block.lo, ray, Float8::set(limit), near) & distinct(block.id);
 }
 
-constexpr std::uint32_t kIndexMask = (1u << 29) - 1;  // of a box's id, which is the instance's number
-
 void visit_single(const BoxBlock& block, const BoxRay& box_ray, const float* limit, std::uint16_t place,
                   const InstanceVisitor& visitor) noexcept {
     Float8 near;
@@ -59,7 +56,7 @@ void visit_single(const BoxBlock& block, const BoxRay& box_ray, const float* lim
             if (distance[__builtin_ctz(m)] < distance[nearest]) nearest = __builtin_ctz(m);
         }
         mask &= ~(1u << nearest);
-        if (distance[nearest] <= *limit) visitor.visit(visitor.self, block.id[nearest] & kIndexMask, &place, 1);
+        if (distance[nearest] <= *limit) visitor.visit(visitor.self, block.id[nearest] & kInstanceMask, &place, 1);
     }
 }
 
@@ -110,12 +107,15 @@ public:
     ListWalk(const BvhView& boxes, const float* limit, const InstanceVisitor& visitor) noexcept
         : boxes_(boxes), limit_(limit), visitor_(visitor) {}
 
-    int prepare_rays(const RayBatch& rays, float magnitude, std::uint16_t* unusable) noexcept {
+    // Of the rays at `places`, ascending, those that can be served; the others go to `unusable`.
+    int prepare_rays(const RayBatch& rays, const std::uint16_t* places, int count, std::uint16_t* unusable) noexcept {
         PreparedRays prepared;
         RayScalars scalars;
         int left_out = 0, n = 0;
-        for (int i = 0; i < rays.count; ++i) {
-            if (i % kGroup == 0) prepared.prepare(rays, i, magnitude);
+        for (int k = 0, group = -1; k < count; ++k) {
+            const int i = places[k];
+            if (i / kGroup != group) prepared.prepare(rays, i / kGroup * kGroup, boxes_.magnitude);
+            group = i / kGroup;
             if (!prepared.usable(i % kGroup)) {
                 unusable[left_out++] = static_cast<std::uint16_t>(i);
                 continue;
@@ -206,7 +206,7 @@ private:
                 here_[left] = fan_[k][r];
                 left += fan_near_[k][r] <= limit_[fan_[k][r]] ? 1 : 0;
             }
-            if (left > 0) visitor_.visit(visitor_.self, block.id[k] & kIndexMask, here_, left);
+            if (left > 0) visitor_.visit(visitor_.self, block.id[k] & kInstanceMask, here_, left);
         }
     }
 
@@ -227,8 +227,20 @@ private:
 
 int walk(const BvhView& boxes, const RayBatch& rays, float magnitude, const float* limit, const InstanceVisitor& visitor,
          std::uint16_t* unusable) noexcept {
-    ListWalk lists(boxes, limit, visitor);
-    const int left_out = lists.prepare_rays(rays, magnitude, unusable);
+    BvhView padded = boxes;
+    padded.magnitude = magnitude;
+    std::uint16_t rest[kRayBatch];
+    int left = rays.count;
+    if (rays.order == RayOrder::divergent) {
+        for (int i = 0; i < left; ++i) rest[i] = static_cast<std::uint16_t>(i);
+    } else {
+        GroupWalk groups;
+        left = groups.gather_all(padded, rays, limit, rest);
+        groups.run(visitor);
+    }
+    if (left == 0) return 0;
+    ListWalk lists(padded, limit, visitor);
+    const int left_out = lists.prepare_rays(rays, rest, left, unusable);
     lists.run();
     return left_out;
 }
@@ -239,17 +251,26 @@ void to_object(const AffineMap& map, const RayBatch& rays, const std::uint16_t* 
     object.count = count;
     object.order = rays.order;
     for (int first = 0; first < count; first += kBvhWidth) {
-        alignas(32) float in[6][kBvhWidth];
-        for (int l = 0; l < kBvhWidth; ++l) {
-            const int at = index[first + l < count ? first + l : first];
-            for (int k = 0; k < 3; ++k) {
-                in[k][l] = rays.origin[k][at];
-                in[3 + k][l] = rays.direction[k][at];
-            }
-            object.t_max[first + l] = limit[at];
-        }
+        const int at = index[first];
         Double8 v[6];
-        for (int k = 0; k < 6; ++k) v[k] = widen(Float8::load(in[k]));
+        if (at % kBvhWidth == 0 && first + kBvhWidth <= count && index[first + kBvhWidth - 1] == at + kBvhWidth - 1) {
+            for (int k = 0; k < 3; ++k) {
+                v[k] = widen(Float8::load(rays.origin[k] + at));
+                v[3 + k] = widen(Float8::load(rays.direction[k] + at));
+            }
+            Float8::load(limit + at).store(object.t_max + first);
+        } else {
+            alignas(32) float in[6][kBvhWidth];
+            for (int l = 0; l < kBvhWidth; ++l) {
+                const int from = index[first + l < count ? first + l : first];
+                for (int k = 0; k < 3; ++k) {
+                    in[k][l] = rays.origin[k][from];
+                    in[3 + k][l] = rays.direction[k][from];
+                }
+                object.t_max[first + l] = limit[from];
+            }
+            for (int k = 0; k < 6; ++k) v[k] = widen(Float8::load(in[k]));
+        }
         for (int k = 0; k < 3; ++k) {
             const auto& r = map.row[k];
             const Double8 x = Double8::set(r[0]), y = Double8::set(r[1]), z = Double8::set(r[2]);

@@ -17,8 +17,9 @@ struct InstanceVisitor {
 
 struct InstanceKernels {
     // Visits every instance whose box a ray may enter at a distance up to limit[ray], nearer ones first where that is cheap.
-    // Visits may lower limits. `magnitude`: of the boxes, or more, which pads them more. Rays that the boxes' arithmetic cannot
-    // serve are left out; their places are written to `unusable`, and their number is returned.
+    // Visits may lower limits, which stand at a multiple of 64 bytes. `magnitude`: of the boxes, or more, which pads them more.
+    // Rays that the boxes' arithmetic cannot serve are left out; their places are written to `unusable`, and their number is
+    // returned.
     int (*walk)(const BvhView& boxes, const RayBatch& rays, float magnitude, const float* limit, const InstanceVisitor& visitor,
                 std::uint16_t* unusable) noexcept;
     // The same for a single ray, whose place is 0. False, without a visit, where it cannot be served.

@@ -146,7 +146,7 @@ void InstanceLevel<A>::closest_hits(const RayBatch& rays, HitBatch& hits) const 
 template <class A>
 void InstanceLevel<A>::occluded(const RayBatch& rays, OccludedBatch& result) const noexcept {
     // Where there is a hit already no box is entered any more.
-    float limit[kRayBatch];
+    alignas(64) float limit[kRayBatch];
     for (int i = 0; i < rays.count; ++i) limit[i] = result[static_cast<std::size_t>(i)] ? -1.0f : rays.t_max[i];
     for_each(rays, limit, [&](std::uint32_t i, const std::uint16_t* places, int count) {
         const Instance& instance = world_->instances[i];
