@@ -2,6 +2,7 @@
 // world, and so are their pictures.
 #include <gtest/gtest.h>
 
+#include "core/accelerator_choice.h"
 #include "core/direct_light.h"
 #include "core/surface_point.h"
 #include "tests/core/render_picture.h"
@@ -272,7 +273,7 @@ TEST(Instances, ABuildIsCheapAndALoopIsNot) {
     const auto knot = estimated_seconds(*load_scene("builtin:knot,n=1000000")->geometry, {1.0e6});
     EXPECT_NEAR(seconds[0] / knot[0], 1.0, 0.01);
     EXPECT_LT(seconds[2], 0.5 * knot[2]);
-    EXPECT_EQ(automatic_accelerator(*crowd), AcceleratorKind::bvh);
+    EXPECT_EQ(automatic_accelerator(*crowd, {1.0e6}).kind, AcceleratorKind::bvh);
     const auto tree = build_accelerator(AcceleratorKind::bvh, crowd->geometry);
     EXPECT_LT(memory_bytes(*tree), 5u * 10000u * 70u);
 }
