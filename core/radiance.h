@@ -93,26 +93,29 @@ private:
 
     // Adds the background to lanes whose ray has left the scene, and lists the vertices of the others.
     void meet_surfaces() {
-        work_.vertices.clear();
+        work_.met.clear();
         for (std::uint32_t i = 0; i < work_.lanes.size(); ++i) {
-            Lane& lane = work_.lanes[i];
-            const Branch& branch = work_.stacks[lane.top];
-            const Hit hit = work_.hits[static_cast<int>(i)];
-            if (!hit.found()) {
-                lane.sum += branch.throughput * background(branch.direction);
-                const std::uint32_t below = branch.below;
-                work_.stacks.release(lane.top);
-                lane.top = below;
+            if (work_.hits.primitive[i] != kNoPrimitive) {
+                work_.met.add() = i;
                 continue;
             }
+            Lane& lane = work_.lanes[i];
+            const Branch& branch = work_.stacks[lane.top];
+            lane.sum += branch.throughput * background(branch.direction);
+            const std::uint32_t below = branch.below;
+            work_.stacks.release(lane.top);
+            lane.top = below;
+        }
+        find_surface_points(scene_, work_.rays, work_.hits, work_.met.all(), work_.points);
+        work_.vertices.clear();
+        for (const std::uint32_t i : work_.met) {
+            const Material& m = scene_.materials[work_.points.material[work_.vertices.size()]];
             Vertex& v = work_.vertices.add();
-            find_surface_point(scene_, branch.origin, branch.direction, hit, v.s);
-            v.wo = -branch.direction;
-            v.material = &scene_.materials[v.s.material];
-            v.highlight = plan_.highlights && v.material->has_highlight();
-            v.lit = v.highlight || v.material->has_diffuse();
+            v.wo = -glm::vec3(work_.rays.direction[0][i], work_.rays.direction[1][i], work_.rays.direction[2][i]);
+            v.material = &m;
+            v.highlight = plan_.highlights && m.has_highlight();
+            v.lit = v.highlight || m.has_diffuse();
             v.direct = glm::vec3(0.0f);
-            v.lane = i;
         }
     }
 
@@ -130,13 +133,14 @@ private:
         for (std::uint32_t k = 0; k < work_.vertices.size(); ++k) {
             Vertex& v = work_.vertices[k];
             if (!v.lit) continue;
+            const SurfacePoint s = work_.points[k];
             glm::vec2 u(0.5f);
             if constexpr ((kParts & kernel_part::soft) != 0) {
-                const Lane& lane = work_.lanes[v.lane];
+                const Lane& lane = work_.lanes[work_.met[k]];
                 if (light.has_area()) u = lane.sampler.square(hash(work_.stacks[lane.top].path, i));
             }
-            const LightSample l = plain ? sample_plain_point(light, v.s.p) : sample_light(light, v.s.p, u);
-            const glm::vec3 light_in = reflected_light(l, v.s, *v.material, v.wo, v.highlight);
+            const LightSample l = plain ? sample_plain_point(light, s.p) : sample_light(light, s.p, u);
+            const glm::vec3 light_in = reflected_light(l, s, *v.material, v.wo, v.highlight);
             if (light_in == glm::vec3(0.0f)) continue;
             if (!plan_.shadows) {
                 v.direct += light_in;
@@ -145,7 +149,7 @@ private:
             const auto n = static_cast<std::size_t>(rays.count);
             work_.shadow_light[n] = light_in;
             work_.shadow_vertex[n] = k;
-            rays.push(shadow_ray(light, l, v.s, at_light));
+            rays.push(shadow_ray(light, l, s, at_light));
         }
         if (rays.count == 0) return;
         work_.counts.shadow += static_cast<std::uint64_t>(rays.count);
@@ -158,10 +162,11 @@ private:
     // Adds each vertex's light to its lane, and puts the branches that go on from there in place of the one that came.
     void go_on() {
         work_.stacks.make_room(work_.vertices.size() * Branching<kParts>::kMaxChildren);
-        for (const Vertex& v : work_.vertices) {
-            Lane& lane = work_.lanes[v.lane];
+        for (std::uint32_t k = 0; k < work_.vertices.size(); ++k) {
+            const Vertex& v = work_.vertices[k];
+            Lane& lane = work_.lanes[work_.met[k]];
             lane.sum += work_.stacks[lane.top].throughput * (v.material->emission + v.direct);
-            branching_.replace(lane.top, v.s, *v.material, v.wo, lane.sampler);
+            branching_.replace(lane.top, work_.points[k], *v.material, v.wo, lane.sampler);
         }
     }
 

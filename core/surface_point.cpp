@@ -2,43 +2,24 @@
 
 #include <cmath>
 
+#include "core/surface_formulas.h"
+
 namespace glint {
 namespace {
 
-constexpr double kUlp = 0x1p-24;  // relative rounding error of one float operation
+using namespace surface;
 
-double largest(glm::dvec3 v) { return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z))); }
-glm::dvec3 unit(glm::dvec3 v) { return v / std::sqrt(glm::dot(v, v)); }
-
-// Raw surface data in double before it is rounded and turned towards the viewer.
-struct Exact {
-    glm::dvec3 p{0.0}, ng{0.0, 0.0, 1.0}, ns{0.0, 0.0, 1.0};
-    double reach = 0.0;  // size of the numbers that a later float intersection subtracts; 0 when that is done in double
-};
-
-inline Exact on_triangle(const Geometry& g, const std::vector<glm::vec3>& normals, std::uint32_t i, const Hit& hit) {
+inline Exact on_triangle_of(const Geometry& g, const std::vector<glm::vec3>& normals, std::uint32_t i, const Hit& hit) {
     const auto& index = g.triangles[i];
-    const glm::dvec3 a(g.vertices[index[0]]), b(g.vertices[index[1]]), c(g.vertices[index[2]]);
-    // From the barycentric weights in double: on the plane exactly, however wrong t is.
-    const double u = hit.u, v = hit.v;
-    const glm::dvec3 p = (1.0 - u - v) * a + u * b + v * c;
-    const glm::dvec3 ng = unit(glm::cross(b - a, c - a));
-    // Later rays are tested in float on vertex - origin: the worst axis counts for all (the shear mixes them).
-    const double reach = std::max(largest(a - p), std::max(largest(b - p), largest(c - p)));
-    glm::dvec3 ns = ng;
-    if (!normals.empty()) {
-        const glm::dvec3 n =
-            (1.0 - u - v) * glm::dvec3(normals[index[0]]) + u * glm::dvec3(normals[index[1]]) + v * glm::dvec3(normals[index[2]]);
-        if (glm::dot(n, n) > 0.0) ns = unit(n);
-    }
-    return {p, ng, ns, reach};
+    const auto corner = [&](const std::vector<glm::vec3>& of, std::size_t k) { return glm::dvec3(of[index[k]]); };
+    const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
+    Exact e = on_triangle(corner(g.vertices, 0), corner(g.vertices, 1), corner(g.vertices, 2), u, v);
+    if (!normals.empty()) e.ns = shading_normal(e.ng, corner(normals, 0), corner(normals, 1), corner(normals, 2), u, v);
+    return e;
 }
 
-Exact on_sphere(const Sphere& s, glm::dvec3 near) {
-    Exact e;
-    e.ng = e.ns = unit(near - glm::dvec3(s.center));
-    e.p = glm::dvec3(s.center) + static_cast<double>(s.radius) * e.ng;
-    return e;
+inline Exact on_sphere_of(const Sphere& s, glm::dvec3 near) {
+    return on_sphere(glm::dvec3(s.center), static_cast<double>(s.radius), near);
 }
 
 Exact on_box(const Box& box, glm::dvec3 near, int face) {
@@ -77,30 +58,14 @@ Exact on_plane(const Plane& plane, glm::dvec3 near) {
     return e;
 }
 
-// Units of 2^-24: what later intersections may misjudge, see SurfacePoint.
-struct Errors {
-    double near, from_afar;
-};
-
-// p and the spawned origin are each rounded once per coordinate (2 units in the 1-norm of n, at most 2 * 1.75);
-// a float triangle test errs by about 8 units of the distances it subtracts.
-// A ray that comes from a distance D (largest coordinate) and ends at t = 1: its direction is rounded twice in
-// direction_to() and the hit's t once, each by a unit of the direction's length, so by at most sqrt(3) D along n: 6 units
-// of D. A triangle test now subtracts distances up to reach + D, with the same 8 units as above.
-inline Errors errors_in_world(const Exact& e) { return {4.0 * largest(e.p) + 8.0 * e.reach, e.reach > 0.0 ? 14.0 : 6.0}; }
-
-// Rounds, turned towards the viewer. Inlined behind each kind of primitive: an Exact that went through memory would be most of
-// the time.
-[[gnu::always_inline]] inline void finish(Exact e, const Errors& errors, const glm::dvec3& d, SurfacePoint& s) {
-    s.p = glm::vec3(e.p);
-    s.outside = glm::dot(e.ng, d) < 0.0;
-    if (!s.outside) e.ng = -e.ng, e.ns = -e.ns;
-    // An interpolated normal may lean past the silhouette; then only the geometric one is of use.
-    if (glm::dot(e.ns, e.ng) <= 0.0 || glm::dot(e.ns, d) >= 0.0) e.ns = e.ng;
-    s.ng = glm::vec3(e.ng);
-    s.ns = glm::vec3(e.ns);
-    s.error = static_cast<float>(kUlp * errors.near);
-    s.error_from_afar = static_cast<float>(kUlp * errors.from_afar);
+[[gnu::always_inline]] inline void finish(const Exact& e, const Errors& errors, const glm::dvec3& d, SurfacePoint& s) {
+    const Rounded r = finished(e, errors, d);
+    s.p = r.p;
+    s.ng = r.ng;
+    s.ns = r.ns;
+    s.outside = r.outside;
+    s.error = r.error;
+    s.error_from_afar = r.error_from_afar;
 }
 [[gnu::always_inline]] inline void finish(const Exact& e, const glm::dvec3& d, SurfacePoint& s) {
     finish(e, errors_in_world(e), d, s);
@@ -138,8 +103,8 @@ Errors move_to_world(const AffineMap& object_from_world, const Aabb& box, Exact&
     const std::uint32_t i = index_of(at.id);
     Exact e{};
     switch (kind_of(at.id)) {
-        case PrimitiveKind::triangle: e = on_triangle(g, surfaces.normals, i, hit); break;
-        case PrimitiveKind::sphere: e = on_sphere(g.spheres[i], near); break;
+        case PrimitiveKind::triangle: e = on_triangle_of(g, surfaces.normals, i, hit); break;
+        case PrimitiveKind::sphere: e = on_sphere_of(g.spheres[i], near); break;
         case PrimitiveKind::box: e = on_box(g.boxes[i], near, static_cast<int>(hit.u)); break;
         case PrimitiveKind::cone: e = on_cone(g.cones[i], near); break;
         case PrimitiveKind::plane: break;  // no prototype holds any
@@ -159,8 +124,8 @@ void find_surface_point(const Scene& scene, glm::vec3 origin, glm::vec3 directio
     s.material = scene.material_of[static_cast<std::size_t>(kind_of(hit.primitive))][i];
     const glm::dvec3 d(direction), near = glm::dvec3(origin) + static_cast<double>(hit.t) * d;
     switch (kind_of(hit.primitive)) {
-        case PrimitiveKind::triangle: return finish(on_triangle(g, scene.normals, i, hit), d, s);
-        case PrimitiveKind::sphere: return finish(on_sphere(g.spheres[i], near), d, s);
+        case PrimitiveKind::triangle: return finish(on_triangle_of(g, scene.normals, i, hit), d, s);
+        case PrimitiveKind::sphere: return finish(on_sphere_of(g.spheres[i], near), d, s);
         case PrimitiveKind::box: return finish(on_box(g.boxes[i], near, static_cast<int>(hit.u)), d, s);
         case PrimitiveKind::cone: return finish(on_cone(g.cones[i], near), d, s);
         case PrimitiveKind::plane: return finish(on_plane(g.planes[i], near), d, s);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "accel/ray_batch.h"
 #include "core/branch_stacks.h"
@@ -10,7 +11,7 @@
 #include "core/ray_counts.h"
 #include "core/sampler.h"
 #include "core/shadow_origins.h"
-#include "core/surface_point.h"
+#include "core/surface_points.h"
 
 namespace glint {
 
@@ -28,14 +29,12 @@ struct Lane {
     std::uint32_t sample = 0;  // its place in the batch
 };
 
-// Where a lane's branch has met a surface.
+// What goes on where a lane's branch has met a surface; the point itself is apart.
 struct Vertex {
-    SurfacePoint s;
     glm::vec3 wo;
     const Material* material;
     bool highlight, lit;  // whether the material shows highlights, or any light of a source
     glm::vec3 direct;     // light arriving straight from the lights, reflected
-    std::uint32_t lane;
 };
 
 // Up to one item a lane; items keep their old contents until they are written.
@@ -44,6 +43,7 @@ class PerLane {
 public:
     void clear() { size_ = 0; }
     T& add() { return items_[size_++]; }
+    [[nodiscard]] std::span<const T> all() const { return {items_.data(), size_}; }
     // Drops all but the first n.
     void keep(std::size_t n) { size_ = n; }
     [[nodiscard]] std::size_t size() const { return size_; }
@@ -63,6 +63,9 @@ struct Workspace {
     std::uint64_t prepared_for = ~std::uint64_t{0};  // the generation whose lights they are of
     BranchStacks stacks;
     PerLane<Lane> lanes;
+    // Where branches have met surfaces: of which lanes, and what is there. All three have the same order.
+    PerLane<std::uint32_t> met;
+    SurfacePoints points;
     PerLane<Vertex> vertices;
     RayBatch rays, shadow_rays;
     HitBatch hits;
