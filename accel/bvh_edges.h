@@ -41,7 +41,8 @@ private:
             const float at = 0.5f * (least + most), half = (most - least) * 0.5000002f, a = forward ? least : -most,
                         b = forward ? most : -least;
             lo = Float8::set(a), hi = Float8::set(b);
-            lo_far = a<0.0f, hi_far = b> 0.0f;
+            lo_far = a < 0.0f;
+            hi_far = b > 0.0f;
             minus_at = Float8::set(-at), reach = Float8::set(half), minus_reach = Float8::set(-half);
         }
     };

@@ -29,7 +29,7 @@ struct AffineMap {
 [[nodiscard]] AffineMap inverse(const AffineMap& map);
 
 // The two maps of an instance bend space by at most this much together, so that the rounding of double stays far below the
-// error bounds, which count in units of float. 1e-3 to 1e3 in one matrix pass.
+// error bounds, which count in units of float. Decides whether a mesh is placed or copied, never a hit.
 constexpr double kMaxBend = 0x1p22;
 
 // The inverse of a placement; nothing where it has none, or none to rely on: flat, non-finite, bent beyond kMaxBend.
