@@ -226,21 +226,19 @@ struct Group {
         at = join(ts[0], ts[1]);
         face = join(faces[0], faces[1]);
     }
-    // Lanes that float cannot rule out. The ray as (shear_x, shear_y, 1) has no length that could overflow; its distance from the
-    // centre, squared, is good to 48 units of 2^-24 of the squared distance to the centre (f good to 1, the direction to 3, its
-    // share of f to 6, the sum to 10 of |f|; squared and doubled), and to a few of the least float.
-    [[nodiscard]] unsigned near_sphere(const SphereBlock& b, int k, const Span& span) const noexcept {
-        const auto from = [&](int axis) { return o[axis] - Float16::set(b.center[axis][k]); };
-        const Float16 fx = from(span.kx), fy = from(span.ky), fz = from(span.kz), r = Float16::set(b.radius[k]);
-        const Float16 shift = ((fx * shear_x + fy * shear_y) + fz) * inverse_length2;
-        const Float16 x = neg_mul_add(shift, shear_x, fx), y = neg_mul_add(shift, shear_y, fy), z = fz - shift;
-        const Float16 distance2 = (x * x + y * y) + z * z, f2 = (fx * fx + fy * fy) + fz * fz;
-        const Float16 margin = (f2 * Float16::set(64.0f * 0x1p-24f) + Float16::set(kLeastT)) + r * r;
-        return (Float16::Mask::from_bits(0xffffu) - lt(margin, distance2)).bits();
-    }
     template <bool any>
     void meet(const SphereBlock& b, int k, const Span& span, unsigned lanes) noexcept {
-        lanes &= near_sphere(b, k, span);
+        const auto center = [&](int axis) { return Float16::set(b.center[axis][k]); };
+        const auto [maybe, surely] = near_spheres<any, Float16>(
+            center(span.kx) - o[span.kx], center(span.ky) - o[span.ky], o[span.kz] - center(span.kz), Float16::set(b.radius[k]),
+            {shear_x, shear_y, inverse_length2, d[span.kz], Float16::load(t)});
+        lanes &= maybe.bits();
+        if constexpr (any) {
+            const unsigned enter = lanes & surely.bits();
+            active &= ~enter;
+            found |= enter;
+            lanes &= ~enter;
+        }
         if (lanes == 0) return;
         const auto spread = [](float x) { return Double8::set(static_cast<double>(x)); };
         const DoubleVector c{spread(b.center[0][k]), spread(b.center[1][k]), spread(b.center[2][k])};

@@ -3,11 +3,10 @@
 // that float cannot decide, by calling it.
 #pragma once
 
+#include "accel/bvh_near_sphere.h"
 #include "accel/bvh_rays.h"
 
 namespace glint::GLINT_ISA {
-
-constexpr float kLeastT = 1.17549435e-38f, kLargestT = 3.402823466e38f;
 
 // Keeps the nearer hit, at equal t the lower id.
 inline void keep(float t, float u, float v, PrimitiveId id, Hit& best) noexcept {

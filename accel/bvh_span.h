@@ -92,8 +92,7 @@ inline bool gather(const BvhView& bvh, const RayBatch& rays, int first, int coun
     g.inverse_z = Float16::set(1.0f) / g.d[k];
     g.shear_x = g.d[span.kx] * g.inverse_z;
     g.shear_y = g.d[span.ky] * g.inverse_z;
-    if (!bvh.only_triangles)
-        g.inverse_length2 = Float16::set(1.0f) / ((g.shear_x * g.shear_x + g.shear_y * g.shear_y) + Float16::set(1.0f));
+    if (!bvh.only_triangles) g.inverse_length2 = ShearedRays<Float16>::inverse_of(g.shear_x, g.shear_y);
     padding = Float16::set(kPadding) * size;
     const auto same = [&](Float16 o, float first_one) { return le(o, Float16::set(first_one)) & le(Float16::set(first_one), o); };
     float start[3];

@@ -188,6 +188,14 @@ TEST_P(Adversarial, SameHitForBundles) {
             if (bounded) rays[i].t_max = axis.t_max < kInfinity ? axis.t_max : random.power_of_ten(-3.0f, 3.0f);
         }
         comparison.compare(rays);
+        // Shadow rays of the points seen: as close before and behind the hit as float can tell, and farther off.
+        const std::vector<Hit> hits = comparison.truth();
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            if (!hits[i].found()) continue;
+            const float off = random.below(2) == 0 ? random.power_of_ten(-7.5f, -2.0f) : 0.0f;
+            rays[i].t_max = hits[i].t * (random.below(2) == 0 ? 1.0f - off : 1.0f + off);
+        }
+        comparison.compare(rays);
     }
     expect_no_mismatch();
 }
