@@ -137,7 +137,8 @@ void closest_in_groups(const BvhView& bvh, const RayBatch& rays, HitBatch& hits,
                 continue;
             }
             if (!together)
-                traverse_group<false>(bvh, groups[i], spans[i], GroupSlabs(groups[i], padding[i]), octant_of(rays, at));
+                traverse_group<false, ChildOrder::near_first>(bvh, groups[i], spans[i], GroupSlabs(groups[i], padding[i]),
+                                                              octant_of(rays, at));
             end(groups[i], hits);
         }
     }
@@ -166,6 +167,8 @@ void closest_coherent(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) 
 }
 
 void occluded_in_groups(const BvhView& bvh, const RayBatch& rays, bool* result, Leftovers* leftovers) noexcept {
+    // Finding an order costs more than it saves, unless what it saves comes from memory. Spheres' nodes are few and large.
+    const bool near_first = bvh.only_triangles && bvh.bytes > kCached;
     for (int first = 0; first < rays.count; first += kGroup) {
         const int count = rays.count - first < kGroup ? rays.count - first : kGroup;
         Group g;
@@ -186,7 +189,11 @@ void occluded_in_groups(const BvhView& bvh, const RayBatch& rays, bool* result, 
             .store(g.t);
         store_where(Float16::Mask::from_bits(0xffffu), kNoPrimitive, g.id);
         for (int l = 0; l < count; ++l) g.active |= (result[first + l] ? 0u : 1u) << l;
-        if (g.active != 0) traverse_group<true>(bvh, g, span, GroupSlabs(g, padding), octant_of(rays, first));
+        if (g.active != 0) {
+            const GroupSlabs slabs(g, padding);
+            near_first ? traverse_group<true, ChildOrder::near_first>(bvh, g, span, slabs, octant_of(rays, first))
+                       : traverse_group<true, ChildOrder::as_stored>(bvh, g, span, slabs, 0);
+        }
         for (unsigned m = g.found; m != 0; m &= m - 1) result[first + __builtin_ctz(m)] = true;
     }
 }

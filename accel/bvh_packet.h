@@ -55,9 +55,16 @@ private:
 
 struct PacketStack {
     BvhRef ref[kStackSize];
-    float depth[kStackSize];
+    float depth[kStackSize];  // of closest hits
     std::uint16_t lanes[kStackSize];
     int top = 0;
+
+    // Without a branch on whether there is any lane: it would be mispredicted too often.
+    void push_if_any(BvhRef child, unsigned entering) noexcept {
+        ref[top] = child;
+        lanes[top] = static_cast<std::uint16_t>(entering);
+        top += entering != 0 ? 1 : 0;
+    }
 };
 
 // Depth beyond which no active ray looks.
@@ -143,10 +150,12 @@ inline void meet_leaf(BvhRef leaf, const BvhView& bvh, const Span& span, const S
     }
 }
 
-template <bool any>
+// The order of a node's children. Near first finds hits earlier; the order in memory is known earlier.
+enum class ChildOrder { near_first, as_stored };
+
+template <bool any, ChildOrder order>
 inline void traverse_group(const BvhView& bvh, Group& g, const Span& span, const GroupSlabs& slabs, unsigned octant) noexcept {
     const SpanTest test(span);
-    const unsigned shift = 3 * octant;
     PacketStack stack;
     float end = end_of(g, span);
     BvhRef at = 0;
@@ -157,19 +166,23 @@ inline void traverse_group(const BvhView& bvh, Group& g, const Span& span, const
             Float8 depth;
             const unsigned mask = test(node.bounds, Float8::set(end), depth);
             const int before = stack.top;
-            if (mask != 0) {
+            const Float16 limit = Float16::load(g.t);
+            if constexpr (order == ChildOrder::as_stored) {
+                for (unsigned m = mask; m != 0; m &= m - 1) {
+                    const int k = __builtin_ctz(m);
+                    stack.push_if_any(node.child[k], slabs(node, k, limit) & lanes);
+                }
+            } else if (mask != 0) {
                 alignas(32) float depths[kBvhWidth];
-                depth.store(depths);
-                const Float16 limit = Float16::load(g.t);
+                if (!any) depth.store(depths);
                 alignas(32) std::uint32_t far_first[kBvhWidth];
-                const int count = sort_children(node, mask, shift, far_first);
+                const int count = sort_children(node, mask, 3 * octant, far_first);
                 for (int i = 0; i < count; ++i) {
-                    const std::uint32_t k = far_first[i];
-                    const unsigned entering = slabs(node, static_cast<int>(k), limit) & lanes;
-                    if (entering == 0) continue;
-                    stack.ref[stack.top] = node.child[k];
-                    stack.depth[stack.top] = depths[k];
-                    stack.lanes[stack.top++] = static_cast<std::uint16_t>(entering);
+                    const auto k = static_cast<int>(far_first[i]);
+                    const unsigned entering = slabs(node, k, limit) & lanes;
+                    if (!any && entering == 0) continue;
+                    if (!any) stack.depth[stack.top] = depths[k];
+                    stack.push_if_any(node.child[k], entering);
                 }
             }
             if (stack.top != before) {
@@ -186,7 +199,7 @@ inline void traverse_group(const BvhView& bvh, Group& g, const Span& span, const
             if (stack.top == 0) return;
             --stack.top;
             lanes = any ? stack.lanes[stack.top] & g.active : stack.lanes[stack.top];
-        } while (stack.depth[stack.top] > end || lanes == 0);
+        } while (lanes == 0 || (!any && stack.depth[stack.top] > end));
         at = stack.ref[stack.top];
     }
 }
