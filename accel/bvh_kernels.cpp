@@ -166,6 +166,12 @@ void closest_coherent(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) 
     });
 }
 
+// Bits of the entries of sixteen that are false.
+unsigned unset(const bool* p) noexcept {
+    const __m128i bytes = _mm_loadu_si128(reinterpret_cast<const __m128i*>(p));
+    return static_cast<unsigned>(_mm_movemask_epi8(_mm_cmpeq_epi8(bytes, _mm_setzero_si128())));
+}
+
 void occluded_in_groups(const BvhView& bvh, const RayBatch& rays, bool* result, Leftovers* leftovers) noexcept {
     // Finding an order costs more than it saves, unless what it saves comes from memory. Spheres' nodes are few and large.
     const bool near_first = bvh.only_triangles && bvh.bytes > kCached;
@@ -188,7 +194,7 @@ void occluded_in_groups(const BvhView& bvh, const RayBatch& rays, bool* result, 
         min(select(lanes, Float16::load(rays.t_max + first), Float16::set(rays.t_max[first])), Float16::set(kLargestT))
             .store(g.t);
         store_where(Float16::Mask::from_bits(0xffffu), kNoPrimitive, g.id);
-        for (int l = 0; l < count; ++l) g.active |= (result[first + l] ? 0u : 1u) << l;
+        g.active = unset(result + first) & ((1u << count) - 1u);
         if (g.active != 0) {
             const GroupSlabs slabs(g, padding);
             near_first ? traverse_group<true, ChildOrder::near_first>(bvh, g, span, slabs, octant_of(rays, first))
