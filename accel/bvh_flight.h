@@ -20,21 +20,22 @@ struct Flight {
     Hit best;
     BvhRef at;
     int index;  // of the ray in its batch
+    int top;    // of the stack
     TraversalStack stack;
 
     void start() noexcept {
         at = 0;
         stack.ref[0] = kDone;
         stack.near[0] = -HUGE_VALF;
-        stack.top = 1;
+        top = 1;
     }
     // Takes what is next from the stack. Without sorting there is nothing to compare.
     template <bool any>
     void pop() noexcept {
         do {
-            --stack.top;
-        } while (!any && stack.near[stack.top] > best.t);
-        at = stack.ref[stack.top];
+            --top;
+        } while (!any && stack.near[top] > best.t);
+        at = stack.ref[top];
     }
 };
 
@@ -54,9 +55,9 @@ inline void step_node(const BvhView& bvh, Flight& f) noexcept {
     Float8 near;
     const unsigned mask = enter(node, SlabRay(f.scalars), Float8::set(f.best.t), near);
     if constexpr (any) {
-        push_all_unsorted(f.stack, node, mask);
+        push_all_unsorted(f.stack, f.top, node, mask);
     } else {
-        push_all(f.stack, node, mask, 3 * f.scalars.octant, near);
+        push_all(f.stack, f.top, node, mask, 3 * f.scalars.octant, near);
     }
     f.pop<any>();
 }

@@ -30,6 +30,7 @@ inline void traverse_frustum(const BvhView& bvh, Group* groups, const Span* span
     };
     float end = farthest();
     TraversalStack stack;
+    int top = 0;
     BvhRef at = 0;
     for (;;) {
         if ((at & kLeafBit) == 0) {
@@ -38,7 +39,7 @@ inline void traverse_frustum(const BvhView& bvh, Group* groups, const Span* span
             const unsigned mask = test(node.bounds, Float8::set(start + end), depth);
             if (mask != 0) {
                 at = (mask & (mask - 1)) == 0 ? node.child[__builtin_ctz(mask)]
-                                              : push_children(stack, node, mask, 3 * octant, depth);
+                                              : push_children(stack, top, node, mask, 3 * octant, depth);
                 continue;
             }
         } else if (static_cast<PrimitiveKind>(leaf_kind(at)) == PrimitiveKind::triangle) {
@@ -64,10 +65,10 @@ inline void traverse_frustum(const BvhView& bvh, Group* groups, const Span* span
             end = farthest();
         }
         do {
-            if (stack.top == 0) return;
-            --stack.top;
-        } while (stack.near[stack.top] > start + end);
-        at = stack.ref[stack.top];
+            if (top == 0) return;
+            --top;
+        } while (stack.near[top] > start + end);
+        at = stack.ref[top];
     }
 }
 

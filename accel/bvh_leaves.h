@@ -36,6 +36,13 @@ struct Triangles {
     }
 };
 
+// Lanes that plain products rule out: rounding is monotone, so a difference of rounded products that is not 0 has the exact sign.
+template <class V>
+inline typename V::Mask certain_misses(const Triangles<V>& s) noexcept {
+    const V u = s.cx * s.by - s.cy * s.bx, v = s.ax * s.cy - s.ay * s.cx, w = s.bx * s.ay - s.by * s.ax, zero = V::set(0.0f);
+    return lt(min(min(u, v), w), zero) & lt(zero, max(max(u, v), w));
+}
+
 template <class V>
 struct TriangleLanes {
     V t, u, v;
@@ -53,17 +60,18 @@ inline TriangleLanes<V> meet_triangles(const Triangles<V>& s, V inverse_z) noexc
         const V u = difference_of_products(s.cx, s.by, s.cy, s.bx), v = difference_of_products(s.ax, s.cy, s.ay, s.cx),
                 w = difference_of_products(s.bx, s.ay, s.by, s.ax);
         const V lowest = min(min(u, v), w), highest = max(max(u, v), w), det = (u + v) + w;
+        const V distance = (u * s.az + v * s.bz) + w * s.cz;
         const auto mixed = lt(lowest, V::set(-kLeastEdge)) & lt(V::set(kLeastEdge), highest);
-        r.hit = le(V::set(kLeastEdge), max(lowest, zero - highest)) & le(abs(det), V::set(kLargestDeterminant));
+        r.hit =
+            le(V::set(kLeastEdge), max(lowest, zero - highest)) & le(max(abs(det), abs(distance)), V::set(kLargestDeterminant));
         r.unsure = (all - mixed) - r.hit;
         const V scale = V::set(1.0f) / det;
         r.u = v * scale;
         r.v = w * scale;
-        r.t = (((u * scale) * s.az + r.u * s.bz) + r.v * s.cz) * inverse_z;
+        r.t = (distance * scale) * inverse_z;
     } else {
-        const V u = s.cx * s.by - s.cy * s.bx, v = s.ax * s.cy - s.ay * s.cx, w = s.bx * s.ay - s.by * s.ax;
         r.hit = V::Mask::from_bits(0);
-        r.unsure = all - (lt(min(min(u, v), w), zero) & lt(zero, max(max(u, v), w)));
+        r.unsure = all - certain_misses(s);
         r.t = r.u = r.v = zero;
     }
     return r;
@@ -173,6 +181,8 @@ template <bool any>
     s.az = Float8::load(z) - ray.o[2], s.bz = Float8::load(z + kVertex) - ray.o[2],
     s.cz = Float8::load(z + 2 * kVertex) - ray.o[2];
     s.shear(ray.shear_x, ray.shear_y);
+    // A way out that is known early saves 3 % of camera rays, but costs 2 % of shadow rays, which end at their first hit.
+    if (!any && certain_misses(s).bits() == (1u << kBvhWidth) - 1) return;
     const TriangleLanes<Float8> r = meet_triangles(s, ray.inverse_z);
     const float limit = best.t < kLargestT ? best.t : kLargestT;
     const unsigned hits = (r.hit & le(Float8::set(kLeastT), r.t) & le(r.t, Float8::set(limit))).bits();

@@ -10,14 +10,14 @@ namespace glint::GLINT_ISA {
 constexpr int kMaxBvhLevels = 64;
 constexpr int kStackSize = kMaxBvhLevels * (kBvhWidth - 1) + 2 * kBvhWidth;
 
+// The number of entries is kept apart, so that it can live in a register.
 struct TraversalStack {
-    int top = 0;  // first, beside what else a ray in flight keeps at hand
     BvhRef ref[kStackSize];
     float near[kStackSize];
 };
 
 // Pushes all children of `mask`, none or many, far to near, and returns the place in the node's order of the nearest one.
-inline int push_all(TraversalStack& stack, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
+inline int push_all(TraversalStack& stack, int& top, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
 #if defined(__AVX512VL__)
     const __m256i order =
         _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(shift));
@@ -25,9 +25,9 @@ inline int push_all(TraversalStack& stack, const BvhNode& node, unsigned mask, u
     const __m256 sorted = _mm256_permutexvar_ps(order, _mm256_mask_blend_ps(static_cast<__mmask8>(mask), inf, near.v));
     const __m256i refs = _mm256_permutexvar_epi32(order, _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child)));
     const __mmask8 present = _mm256_cmp_ps_mask(sorted, inf, _CMP_LT_OQ);
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + stack.top), _mm256_maskz_compress_epi32(present, refs));
-    _mm256_storeu_ps(stack.near + stack.top, _mm256_maskz_compress_ps(present, sorted));
-    stack.top += __builtin_popcount(mask);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_maskz_compress_epi32(present, refs));
+    _mm256_storeu_ps(stack.near + top, _mm256_maskz_compress_ps(present, sorted));
+    top += __builtin_popcount(mask);
     return 31 - __builtin_clz(static_cast<unsigned>(present) | 1u);
 #else
     alignas(32) float distance[kBvhWidth];
@@ -36,9 +36,9 @@ inline int push_all(TraversalStack& stack, const BvhNode& node, unsigned mask, u
     for (int i = 0; i < kBvhWidth; ++i) {
         const unsigned k = node.order[i] >> shift & 7u;
         const bool entered = (mask >> k & 1u) != 0;
-        stack.ref[stack.top] = node.child[k];
-        stack.near[stack.top] = distance[k];
-        stack.top += entered ? 1 : 0;
+        stack.ref[top] = node.child[k];
+        stack.near[top] = distance[k];
+        top += entered ? 1 : 0;
         nearest = entered ? i : nearest;
     }
     return nearest;
@@ -46,26 +46,27 @@ inline int push_all(TraversalStack& stack, const BvhNode& node, unsigned mask, u
 }
 // Pushes all but the nearest of the children of `mask` (at least one) and returns that one. It is looked up in the node, because
 // what was just compressed and stored would come back from the stack too late.
-inline BvhRef push_children(TraversalStack& stack, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
-    const int nearest = push_all(stack, node, mask, shift, near);
-    --stack.top;
+inline BvhRef push_children(TraversalStack& stack, int& top, const BvhNode& node, unsigned mask, unsigned shift,
+                            Float8 near) noexcept {
+    const int nearest = push_all(stack, top, node, mask, shift, near);
+    --top;
     return node.child[node.order[nearest] >> shift & 7u];
 }
 
-inline void push_all_unsorted(TraversalStack& stack, const BvhNode& node, unsigned mask) noexcept {
+inline void push_all_unsorted(TraversalStack& stack, int& top, const BvhNode& node, unsigned mask) noexcept {
 #if defined(__AVX512VL__)
     const __m256i refs = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + stack.top),
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top),
                         _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), refs));
-    stack.top += __builtin_popcount(mask);
+    top += __builtin_popcount(mask);
 #else
-    for (; mask != 0; mask &= mask - 1) stack.ref[stack.top++] = node.child[__builtin_ctz(mask)];
+    for (; mask != 0; mask &= mask - 1) stack.ref[top++] = node.child[__builtin_ctz(mask)];
 #endif
 }
 
 // The same in any order and without distances.
-inline BvhRef push_unsorted(TraversalStack& stack, const BvhNode& node, unsigned mask) noexcept {
-    push_all_unsorted(stack, node, mask & (mask - 1));
+inline BvhRef push_unsorted(TraversalStack& stack, int& top, const BvhNode& node, unsigned mask) noexcept {
+    push_all_unsorted(stack, top, node, mask & (mask - 1));
     return node.child[__builtin_ctz(mask)];
 }
 
@@ -92,40 +93,45 @@ inline int sort_children(const BvhNode& node, unsigned mask, unsigned shift, std
 
 // Improves `best`. With `any`, ends at the first hit. `visit(ref)` hears of every node and leaf.
 template <bool any, class Visit>
-inline void traverse(const BvhView& bvh, const Ray& ray, const RayScalars& scalars, Hit& best, Visit visit) noexcept {
+[[gnu::always_inline]] inline void traverse(const BvhView& bvh, const Ray& ray, const RayScalars& scalars, Hit& best,
+                                            Visit visit) noexcept {
     if (!scalars.usable) return;
     const SlabRay slabs(scalars);
     const LeafRay leaf_ray(ray, scalars, bvh);
     TraversalStack stack;
+    int top = 0;
     Float8 limit = Float8::set(best.t);
     BvhRef at = 0;
     for (;;) {
-        visit(at);
-        if ((at & kLeafBit) == 0) {
-            const BvhNode& node = bvh.at<BvhNode>(at);
+        while ((at & kLeafBit) == 0) {
+            visit(at);
+            const BvhNode& node = *reinterpret_cast<const BvhNode*>(bvh.units + std::size_t{at} * kBvhUnit);
             Float8 near;
             const unsigned mask = enter(node, slabs, limit, near);
-            if (mask != 0) {
-                if ((mask & (mask - 1)) == 0) {
-                    at = node.child[__builtin_ctz(mask)];
-                } else if constexpr (any) {
-                    at = push_unsorted(stack, node, mask);
-                } else {
-                    at = push_children(stack, node, mask, slabs.shift, near);
-                }
-                continue;
+            if (mask == 0) {
+                do {
+                    if (top == 0) return;
+                    --top;
+                } while (!any && stack.near[top] > best.t);
+                at = stack.ref[top];
+            } else if ((mask & (mask - 1)) == 0) {
+                at = node.child[__builtin_ctz(mask)];
+            } else if constexpr (any) {
+                at = push_unsorted(stack, top, node, mask);
+            } else {
+                at = push_children(stack, top, node, mask, slabs.shift, near);
             }
-        } else {
-            const PrimitiveId before = best.primitive;
-            meet_leaf<any>(at, leaf_ray, best);
-            if (any && best.primitive != before) return;
-            limit = Float8::set(best.t);
         }
+        visit(at);
+        const PrimitiveId before = best.primitive;
+        meet_leaf<any>(at, leaf_ray, best);
+        if (any && best.primitive != before) return;
+        limit = Float8::set(best.t);
         do {
-            if (stack.top == 0) return;
-            --stack.top;
-        } while (!any && stack.near[stack.top] > best.t);
-        at = stack.ref[stack.top];
+            if (top == 0) return;
+            --top;
+        } while (!any && stack.near[top] > best.t);
+        at = stack.ref[top];
     }
 }
 

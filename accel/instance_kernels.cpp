@@ -63,6 +63,7 @@ void visit_single(const BoxBlock& block, const BoxRay& box_ray, const float* lim
 void walk_from(const BvhView& boxes, BvhRef root, const BoxRay& ray, const float* limit, std::uint16_t place,
                const InstanceVisitor& visitor) noexcept {
     TraversalStack stack;
+    int top = 0;
     BvhRef at = root;
     for (;;) {
         if ((at & kLeafBit) == 0) {
@@ -70,17 +71,17 @@ void walk_from(const BvhView& boxes, BvhRef root, const BoxRay& ray, const float
             Float8 near;
             const unsigned mask = enter_children(node, ray, *limit, near);
             if (mask != 0) {
-                at = push_children(stack, node, mask, 3 * ray.octant, near);
+                at = push_children(stack, top, node, mask, 3 * ray.octant, near);
                 continue;
             }
         } else {
             visit_single(boxes.at<BoxBlock>(at), ray, limit, place, visitor);
         }
         do {
-            if (stack.top == 0) return;
-            --stack.top;
-        } while (stack.near[stack.top] > *limit);
-        at = stack.ref[stack.top];
+            if (top == 0) return;
+            --top;
+        } while (stack.near[top] > *limit);
+        at = stack.ref[top];
     }
 }
 
