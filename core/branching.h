@@ -7,13 +7,12 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/branch_stacks.h"
 #include "core/fresnel.h"
-#include "core/ray_counts.h"
 #include "core/render_plan.h"
 #include "core/sampler.h"
 #include "core/scene.h"
 #include "core/surface_point.h"
+#include "core/workspace.h"
 
 namespace glint {
 
@@ -36,59 +35,112 @@ constexpr std::uint32_t fuzz_direction = 0x80000000u, fuzz_radius = 0x80000001u;
 template <unsigned kParts>
 class Branching {
 public:
-    Branching(const Scene& scene, const RenderPlan& plan, BranchStacks& stacks, RayCounts& counts)
-        : scene_(scene), plan_(plan), stacks_(stacks), counts_(counts) {}
+    Branching(const Scene& scene, const RenderPlan& plan) : scene_(scene), plan_(plan) {}
 
-    // The branches a surface can leave behind; as much room must have been made.
-    static constexpr std::size_t kMaxChildren = (kParts & kernel_part::glass) != 0 ? 2 : 1;
     static constexpr bool kAny = (kParts & (kernel_part::mirror | kernel_part::glass)) != 0;
 
-    // Replaces the branch `node`, which was the top of its stack and has met `s`, by its children.
-    void replace(std::uint32_t& node, const SurfacePoint& s, const Material& m, glm::vec3 wo, const Sampler& sampler) {
-        const Branch& branch = stacks_[node];
-        std::uint32_t top = branch.below;
+    // Puts the ray that the sample of lane `lane` follows next, whose ray has met vertex `k`, into place `to` <= lane. False
+    // when there is none. Where there is glass, one branch may be pushed: room must have been made.
+    bool follow(Workspace& work, std::size_t k, std::size_t lane, std::size_t to) {
+        const SurfacePoint s = work.vertices.points[k];
+        const Material& m = scene_.materials[s.material];
+        const glm::vec3 wo(work.vertices.wo[0][k], work.vertices.wo[1][k], work.vertices.wo[2][k]);
+        From from{work,
+                  to,
+                  lane,
+                  {work.lanes.throughput[0][lane], work.lanes.throughput[1][lane], work.lanes.throughput[2][lane]},
+                  work.lanes.path[lane],
+                  work.lanes.bounces[lane],
+                  false};
         if constexpr ((kParts & kernel_part::mirror) != 0) {
-            if (m.has_mirror()) follow_mirror(node, top, s, m, wo, sampler);
+            if (m.has_mirror()) follow_mirror(from, s, m, wo);
         }
         if constexpr ((kParts & kernel_part::glass) != 0) {
-            if (m.glass) follow_glass(node, top, s, m, wo);
+            if (m.glass) follow_glass(from, s, m, wo);
         }
-        stacks_.release(node);
-        node = top;
+        return from.any || resume(work, lane, to);
+    }
+
+    // The same where the ray has left the scene: takes up the branch that was left last.
+    bool resume(Workspace& work, std::size_t lane, std::size_t to) {
+        if constexpr ((kParts & kernel_part::glass) == 0) return false;
+        const std::uint32_t node = work.lanes.waiting[lane];
+        if (node == BranchStacks::kEmpty) return false;
+        const Branch& b = work.stacks[node];
+        put(work, to, b.origin, b.direction, b.throughput, b.path, b.bounces);
+        work.media[to] = work.stacks.medium(node);
+        work.lanes.waiting[lane] = b.below;
+        work.stacks.release(node);
+        return true;
     }
 
 private:
-    // Pushes the ray unless its weight is 0 or the depth limit is reached. True when it was pushed.
-    bool follow(const Branch& from, std::uint32_t& top, const SurfacePoint& s, glm::vec3 side, glm::vec3 direction,
-                glm::vec3 weight, std::uint32_t branch_index, std::uint64_t& counter) {
+    // A branch that has met a surface, and where its children go.
+    struct From {
+        Workspace& work;
+        std::size_t to, lane;
+        glm::vec3 throughput;
+        std::uint32_t path;
+        int bounces;
+        bool any;  // whether `to` holds a child already
+    };
+
+    static void put(Workspace& work, std::size_t to, glm::vec3 origin, glm::vec3 direction, glm::vec3 throughput,
+                    std::uint32_t path, int bounces) {
+        for (int i = 0; i < 3; ++i) {
+            work.rays.origin[i][to] = origin[i];
+            work.rays.direction[i][to] = direction[i];
+            work.lanes.throughput[i][to] = throughput[i];
+        }
+        work.rays.t_max[to] = kInfinity;
+        work.lanes.path[to] = path;
+        work.lanes.bounces[to] = bounces;
+    }
+
+    // Leaves the child at `to` for later.
+    static void set_aside(Workspace& work, std::size_t to, std::size_t lane) {
+        Branch& b = work.stacks.push(work.lanes.waiting[lane]);
+        for (int i = 0; i < 3; ++i) {
+            b.origin[i] = work.rays.origin[i][to];
+            b.direction[i] = work.rays.direction[i][to];
+            b.throughput[i] = work.lanes.throughput[i][to];
+        }
+        b.path = work.lanes.path[to];
+        b.bounces = work.lanes.bounces[to];
+        work.stacks.medium(work.lanes.waiting[lane]) = work.media[to];
+    }
+
+    // Follows the ray unless its weight is 0 or the depth limit is reached. True when it is followed; the last of several
+    // children comes first.
+    bool follow(From& from, const SurfacePoint& s, glm::vec3 side, glm::vec3 direction, glm::vec3 weight,
+                std::uint32_t branch_index, std::uint64_t& counter) {
         const glm::vec3 throughput = from.throughput * weight;
         const float largest = std::max(throughput.x, std::max(throughput.y, throughput.z));
         if (!(largest > 0.0f)) return false;
         if (from.bounces >= plan_.depth) {
-            ++counts_.depth_cut;
-            counts_.depth_cut_weight += static_cast<double>(largest);
+            ++from.work.counts.depth_cut;
+            from.work.counts.depth_cut_weight += static_cast<double>(largest);
             return false;
         }
         ++counter;
-        Branch& to = stacks_.push(top);
-        to.origin = spawn_origin(s, side);
-        to.direction = direction;
-        to.throughput = throughput;
-        to.path = hash(from.path, branch_index + 0x40000000u);
-        to.bounces = from.bounces + 1;
+        if constexpr ((kParts & kernel_part::glass) != 0) {
+            if (from.any) set_aside(from.work, from.to, from.lane);
+        }
+        put(from.work, from.to, spawn_origin(s, side), direction, throughput, hash(from.path, branch_index + 0x40000000u),
+            from.bounces + 1);
+        from.any = true;
         return true;
     }
 
-    void follow_mirror(std::uint32_t node, std::uint32_t& top, const SurfacePoint& s, const Material& m, glm::vec3 wo,
-                       const Sampler& sampler) {
-        const Branch& branch = stacks_[node];
+    void follow_mirror(From& from, const SurfacePoint& s, const Material& m, glm::vec3 wo) {
         glm::vec3 direction = above(reflect(wo, s.ns), s);
         if constexpr ((kParts & kernel_part::fuzzy) != 0) {
             const float radius = plan_.fuzz(m);
             if (radius > 0.0f) {
+                const Sampler sampler = from.work.lanes.sampler(plan_.sampler, from.lane);
                 // Uniform in the unit ball: the radius is the cube root of a uniform number.
-                const float r = std::cbrt(sampler.interval(hash(branch.path, dimension::fuzz_radius)));
-                const glm::vec3 offset = r * sphere_from_square(sampler.square(hash(branch.path, dimension::fuzz_direction)));
+                const float r = std::cbrt(sampler.interval(hash(from.path, dimension::fuzz_radius)));
+                const glm::vec3 offset = r * sphere_from_square(sampler.square(hash(from.path, dimension::fuzz_direction)));
                 direction = fuzzy_direction(glm::normalize(direction), s.ng, radius, offset);
             }
         }
@@ -97,13 +149,13 @@ private:
             const float c = 1.0f - std::min(1.0f, glm::dot(wo, s.ns)), c2 = c * c;
             weight += (1.0f - weight) * (c2 * c2 * c);
         }
-        if (!follow(branch, top, s, s.ng, direction, weight, 0, counts_.reflection)) return;
-        if constexpr ((kParts & kernel_part::glass) != 0) stacks_.medium(top) = stacks_.medium(node);
+        if (!follow(from, s, s.ng, direction, weight, 0, from.work.counts.reflection)) return;
+        if constexpr ((kParts & kernel_part::glass) != 0) from.work.media[from.to] = from.work.media[from.lane];
     }
 
-    void follow_glass(std::uint32_t node, std::uint32_t& top, const SurfacePoint& s, const Material& m, glm::vec3 wo) {
-        const Branch& branch = stacks_[node];
-        const MediumStack& here = stacks_.medium(node);
+    void follow_glass(From& from, const SurfacePoint& s, const Material& m, glm::vec3 wo) {
+        Workspace& work = from.work;
+        const MediumStack here = work.media[from.lane];
         MediumStack beyond = here;
         float ior_from = ior_of(here.top());
         if (s.outside) {
@@ -118,15 +170,11 @@ private:
         const double reflected = plan_.fresnel == Fresnel::exact ? fresnel_dielectric(cos_i, eta) : fresnel_schlick(cos_i, eta);
         if (plan_.refractions && transmitted_cos2(cos_i, eta) > 0.0) {
             const glm::vec3 weight = m.transmittance * static_cast<float>(1.0 - reflected);
-            if (follow(branch, top, s, -s.ng, refract(wo, s.ns, eta), weight, 1, counts_.refraction)) {
-                stacks_.medium(top) = beyond;
-            }
+            if (follow(from, s, -s.ng, refract(wo, s.ns, eta), weight, 1, work.counts.refraction)) work.media[from.to] = beyond;
         }
         if (plan_.reflections && reflected > 0.0) {
             const glm::vec3 weight(static_cast<float>(reflected));
-            if (follow(branch, top, s, s.ng, above(reflect(wo, s.ns), s), weight, 0, counts_.reflection)) {
-                stacks_.medium(top) = here;
-            }
+            if (follow(from, s, s.ng, above(reflect(wo, s.ns), s), weight, 0, work.counts.reflection)) work.media[from.to] = here;
         }
     }
 
@@ -142,8 +190,6 @@ private:
 
     const Scene& scene_;
     const RenderPlan& plan_;
-    BranchStacks& stacks_;
-    RayCounts& counts_;
 };
 
 }  // namespace glint

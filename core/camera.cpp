@@ -1,5 +1,6 @@
 #include "core/camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -39,32 +40,31 @@ Camera::Camera(const CameraPose& pose, int width, int height) {
     focus_distance_ = pose.focus_distance > 0.0f ? pose.focus_distance : static_cast<float>(distance);
 }
 
-// Plain loops over arrays, each step as in ray(): compilers make vector instructions of them, with the same bits.
-[[gnu::always_inline]] inline void Camera::directions(const float* x, const float* y,
-                                                      float (&direction)[3][kRunOfRays]) const noexcept {
-    float d[3][kRunOfRays];
-    for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < kRunOfRays; ++k) {
-            d[i][k] = (right_[i] * (x[k] * inverse_width_ - 0.5f) + up_[i] * (0.5f - y[k] * inverse_height_)) - back_[i];
+// A plain loop over arrays, each step as in ray(): compilers make vector instructions of it, with the same bits.
+[[gnu::always_inline]] inline void Camera::directions(const float* x, const float* y, std::size_t n,
+                                                      RayBatch& rays) const noexcept {
+    for (std::size_t first = 0; first < n; first += kRun) {
+#pragma GCC ivdep
+        for (std::size_t k = first; k < first + kRun; ++k) {
+            const glm::vec3 d = (right_ * (x[k] * inverse_width_ - 0.5f) + up_ * (0.5f - y[k] * inverse_height_)) - back_;
+            const float length = std::sqrt(glm::dot(d, d));
+            rays.direction[0][k] = d.x / length;
+            rays.direction[1][k] = d.y / length;
+            rays.direction[2][k] = d.z / length;
         }
     }
-    float length[kRunOfRays];
-    for (int k = 0; k < kRunOfRays; ++k) {
-        length[k] = std::sqrt(d[0][k] * d[0][k] + d[1][k] * d[1][k] + d[2][k] * d[2][k]);
-    }
-    for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < kRunOfRays; ++k) direction[i][k] = d[i][k] / length[k];
-    }
 }
 
-[[gnu::target("avx2")]] void Camera::directions_avx2(const float* x, const float* y,
-                                                     float (&direction)[3][kRunOfRays]) const noexcept {
-    directions(x, y, direction);
+[[gnu::target("avx2")]] void Camera::directions_avx2(const float* x, const float* y, std::size_t n,
+                                                     RayBatch& rays) const noexcept {
+    directions(x, y, n, rays);
 }
 
-void Camera::pinhole_rays(const float* x, const float* y, float (&direction)[3][kRunOfRays]) const noexcept {
-    if (isa_in_use() == Isa::baseline) return directions(x, y, direction);
-    directions_avx2(x, y, direction);
+void Camera::pinhole_rays(const float* x, const float* y, std::size_t n, RayBatch& rays) const noexcept {
+    isa_in_use() == Isa::baseline ? directions(x, y, n, rays) : directions_avx2(x, y, n, rays);
+    for (int axis = 0; axis < 3; ++axis) std::fill_n(rays.origin[axis], n, eye_[axis]);
+    std::fill_n(rays.t_max, n, kInfinity);
+    rays.count = static_cast<int>(n);
 }
 
 }  // namespace glint

@@ -6,7 +6,7 @@
 
 #include <glm/glm.hpp>
 
-#include "accel/ray.h"
+#include "accel/ray_batch.h"
 
 namespace glint {
 
@@ -45,15 +45,15 @@ public:
         ray.direction /= std::sqrt(glm::dot(ray.direction, ray.direction));
         return ray;
     }
-    // The directions of a run of rays through the lens centre, as ray() gives them one by one; they all start at eye().
-    static constexpr int kRunOfRays = 8;
-    void pinhole_rays(const float* x, const float* y, float (&direction)[3][kRunOfRays]) const noexcept;
+    // The same for n image positions through the lens centre. All arrays are read and written up to the next multiple of kRun.
+    static constexpr std::size_t kRun = 8;
+    void pinhole_rays(const float* x, const float* y, std::size_t n, RayBatch& rays) const noexcept;
     [[nodiscard]] glm::vec3 eye() const { return eye_; }
     [[nodiscard]] bool has_lens() const { return lens_radius_ > 0.0f; }
 
 private:
-    void directions(const float* x, const float* y, float (&direction)[3][kRunOfRays]) const noexcept;
-    void directions_avx2(const float* x, const float* y, float (&direction)[3][kRunOfRays]) const noexcept;
+    void directions(const float* x, const float* y, std::size_t n, RayBatch& rays) const noexcept;
+    void directions_avx2(const float* x, const float* y, std::size_t n, RayBatch& rays) const noexcept;
 
     glm::vec3 eye_{0.0f}, right_{0.0f}, up_{0.0f}, back_{0.0f};  // right_, up_ scaled to the window at distance 1
     glm::vec3 lens_u_{0.0f}, lens_v_{0.0f};                      // lens axes, scaled by the lens radius

@@ -1,13 +1,15 @@
-// Light that reaches a surface straight from a source and is reflected by it, and the ray that asks whether it does.
-// Knows no accelerator, no branches and no random numbers.
+// Light that reaches surfaces straight from a source and is reflected by them, and the rays that ask whether it does: for one
+// point, and for many at once.
+// Knows no accelerator, no branches and no random numbers. Invariant: many points get what each gets alone, to the bit.
 #pragma once
 
 #include <cmath>
 
-#include "accel/ray.h"
+#include "accel/ray_batch.h"
 #include "core/light.h"
 #include "core/material.h"
 #include "core/surface_point.h"
+#include "core/vertices.h"
 
 namespace glint {
 
@@ -36,5 +38,29 @@ namespace glint {
     const glm::vec3 direction = l.point - origin;
     return {origin, direction, shadow_reach(light, origin, direction)};
 }
+
+// The same for all vertices of a wave and one light after the other.
+struct alignas(64) DirectLight {
+    // To be set before each light with area: where on it each vertex looks.
+    float u[2][kRayBatch];
+
+    // Finds the light that arrives at each vertex and is reflected if nothing is in the way.
+    void reflect(const Light& light, const Vertices& vertices) noexcept;
+    // The rays that ask, in the order of the vertices, for those with any light.
+    void cast(const Light& light, bool starts_at_light, const Vertices& vertices, RayBatch& rays) noexcept;
+    // Adds the light to the vertices whose ray was not blocked.
+    void add(const OccludedBatch& blocked, Vertices& vertices) const noexcept;
+    // Adds it to all.
+    void add(Vertices& vertices) const noexcept;
+
+private:
+    friend struct DirectLightLoops;
+
+    float wi_[3][kRayBatch], point_[3][kRayBatch], light_[3][kRayBatch], cosine_[kRayBatch], highlight_[kRayBatch];
+    std::uint32_t shows_[kRayBatch];   // all bits where there is any light, else none
+    std::uint32_t vertex_[kRayBatch];  // of each ray
+    std::size_t rays_ = 0;
+    bool at_infinity_ = false;
+};
 
 }  // namespace glint

@@ -1,13 +1,15 @@
 #include "core/light.h"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "core/light_formulas.h"
 #include "core/sampler.h"
 
 namespace glint {
 namespace {
+
+using namespace light_formulas;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
@@ -28,45 +30,12 @@ float range_factor(const Light& light, float distance2) {
     return std::max(0.0f, std::min(1.0f, 1.0f - q2 * q2));
 }
 
-// Sets wi and returns the squared distance; 0 where the receiver is at the light itself (no direction, no light).
-float aim(LightSample& s, glm::vec3 receiver) {
-    const glm::vec3 to = s.point - receiver;
-    const float distance2 = glm::dot(to, to);
-    if (!(distance2 >= std::numeric_limits<float>::min())) return 0.0f;
-    s.wi = to / std::sqrt(distance2);
-    return distance2;
-}
-
-// Uniform over the cone that the sphere fills (Shirley, Wang & Zimmerman 1996, "Monte Carlo Techniques for Direct
-// Lighting Calculations"), so the estimate is the exact irradiance where nothing blocks and the cone is above the horizon.
-LightSample sample_physical_sphere(const Light& light, glm::vec3 receiver, glm::vec2 u) {
-    LightSample s;
-    const glm::dvec3 to = glm::dvec3(light.position) - glm::dvec3(receiver);
-    const double d2 = glm::dot(to, to), r2 = static_cast<double>(light.radius) * light.radius;
-    if (!(d2 > r2)) return s;  // inside the light: it has no outside to shine from
-    const double sin2_max = r2 / d2;
-    const double cos_max = std::sqrt(1.0 - sin2_max);
-    const double one_minus_cos = sin2_max / (1.0 + cos_max);  // 1 - cos_max without cancellation far away
-    const double cos_theta = 1.0 - u.x * one_minus_cos;
-    const double sin2 = std::max(0.0, 1.0 - cos_theta * cos_theta);
-    const double sin_theta = std::sqrt(sin2), phi = 2.0 * std::numbers::pi * u.y;
-    const double d = std::sqrt(d2);
-    const glm::dvec3 w = to / d;
-    const glm::dvec3 a = std::abs(w.x) > 0.5 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
-    const glm::dvec3 p = glm::normalize(glm::cross(w, a)), q = glm::cross(w, p);
-    const glm::dvec3 direction = cos_theta * w + sin_theta * (std::cos(phi) * p + std::sin(phi) * q);
-    const double near = d * cos_theta - std::sqrt(std::max(0.0, r2 - d2 * sin2));
-    s.wi = glm::vec3(direction);
-    s.point = glm::vec3(glm::dvec3(receiver) + near * direction);
-    s.arriving = light.emission * static_cast<float>(2.0 * std::numbers::pi * one_minus_cos);
-    return s;
-}
-
 }  // namespace
 
 LightSample sample_light(const Light& light, glm::vec3 receiver, glm::vec2 u) noexcept {
     const bool physical = light.falloff == Light::Falloff::physical;
     LightSample s;
+    glm::vec3 point = light.position;
     switch (light.shape) {
         case Light::Shape::directional:
             s.wi = -light.direction;
@@ -74,50 +43,30 @@ LightSample sample_light(const Light& light, glm::vec3 receiver, glm::vec2 u) no
             s.arriving = light.emission;
             return s;
         case Light::Shape::sphere:
-            if (physical) return sample_physical_sphere(light, receiver, u);
-            s.point = light.position + light.radius * sphere_from_square(u);
+            if (physical) return physical_sphere(light, receiver, u);
+            point = light.position + light.radius * sphere_from_square(u);
             break;
-        case Light::Shape::quad: s.point = light.position + u.x * light.edge1 + u.y * light.edge2; break;
+        case Light::Shape::quad:
+            if (physical) return physical_quad(light, receiver, u);
+            point = quad_point(light, u);
+            break;
         case Light::Shape::point:
-            s.point = light.position;
-            if (light.edge1 != glm::vec3(0.0f)) s.point += (u.x - 0.5f) * light.edge1 + (u.y - 0.5f) * light.edge2;
+            if (light.has_area()) point = spread_point(light, u);
             break;
     }
-    const float distance2 = aim(s, receiver);
-    if (distance2 == 0.0f) return s;
-    s.arriving = light.emission;
-    if (light.shape == Light::Shape::quad && physical) {
-        // Radiance times the quad's solid angle per unit area; nothing from its back or its own plane.
-        const glm::vec3 area = glm::cross(light.edge1, light.edge2);
-        s.arriving *= std::max(0.0f, -glm::dot(area, s.wi)) / distance2;
-    } else if (physical) {
-        s.arriving *= spot_factor(light, s.wi) * range_factor(light, distance2) / distance2;
+    s = everywhere_alike(light, point, receiver);
+    if (physical) {
+        const Aim to = aim(point, receiver);
+        const float factor = spot_factor(light, to.wi) * range_factor(light, to.distance2) / to.distance2;
+        s.arriving = where(to.any, s.arriving * factor);
     }
     return s;
 }
 
 float shadow_reach(const Light& light, glm::vec3 origin, glm::vec3 direction) noexcept {
-    // The numbers that a float intersection with the light's own triangles subtracts; each such step errs by 2^-24 of them.
-    const glm::vec3 size = glm::abs(origin) + glm::abs(light.position) + glm::abs(light.edge1) + glm::abs(light.edge2);
-    const float error = 0x1p-20f * (std::max(size.x, std::max(size.y, size.z)) + light.radius);
-    // What touches a true point shadows it: the ray ends past it, or rounding would decide pixel by pixel.
-    if (!light.has_area()) return 1.0f + error / std::sqrt(glm::dot(direction, direction));
-    const glm::dvec3 d(direction);
-    double reach = 0.0;
-    if (light.shape == Light::Shape::sphere) {
-        // Entry into a slightly larger ball: a ray that grazes the ball may enter it long before the sampled point.
-        const glm::dvec3 to = glm::dvec3(light.position) - glm::dvec3(origin);
-        const double r = static_cast<double>(light.radius) + static_cast<double>(error), d2 = glm::dot(d, d);
-        const double nearest = glm::dot(to, d) / d2;
-        const glm::dvec3 off = to - nearest * d;
-        reach = nearest - std::sqrt(std::max(0.0, (r * r - glm::dot(off, off)) / d2));
-    } else {
-        // Measured across the plane, since a slanted ray meets it earlier or later by 1/cos of the error.
-        const glm::dvec3 area = glm::cross(glm::dvec3(light.edge1), glm::dvec3(light.edge2));
-        reach = 1.0 - static_cast<double>(error) * std::sqrt(glm::dot(area, area)) / std::abs(glm::dot(area, d));
-    }
-    // A receiver that close to the light has nothing in between. (Also for NaN, where edges are parallel.)
-    return reach > 0.0 ? static_cast<float>(reach) : 0.0f;
+    if (!light.has_area()) return reach_of_point(light, origin, direction);
+    return light.shape == Light::Shape::sphere ? reach_of_sphere(light, origin, direction)
+                                               : reach_of_quad(light, origin, direction);
 }
 
 Light without_area(const Light& light) {

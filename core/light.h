@@ -3,10 +3,6 @@
 // Invariant: sample_light() is an unbiased estimate of the light's mean (falloff none) or of its integral (physical).
 #pragma once
 
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include <glm/glm.hpp>
 
 namespace glint {
@@ -52,19 +48,6 @@ struct LightSample {
 // A point that shines alike in all directions, however far.
 [[nodiscard]] inline bool is_plain_point(const Light& light) {
     return light.is_true_point() && (light.falloff == Light::Falloff::none || (light.cos_outer < -1.0f && !(light.range > 0.0f)));
-}
-
-// sample_light() for such a light, which needs no random number; inline, since most lights of most scenes are such.
-[[nodiscard]] inline LightSample sample_plain_point(const Light& light, glm::vec3 receiver) noexcept {
-    LightSample s;
-    s.point = light.position;
-    const glm::vec3 to = s.point - receiver;
-    const float distance2 = glm::dot(to, to);
-    if (!(distance2 >= std::numeric_limits<float>::min())) return s;
-    s.wi = to / std::sqrt(distance2);
-    s.arriving = light.emission;
-    if (light.falloff == Light::Falloff::physical) s.arriving *= 1.0f / distance2;
-    return s;
 }
 
 // How far a shadow ray looks, in lengths of `direction`, which leads from `origin` to a sampled point of the light.

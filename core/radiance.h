@@ -5,7 +5,9 @@
 // order, so the answer does not depend on which samples share a batch, to the bit.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <span>
 
 #include "accel/accelerator.h"
@@ -32,11 +34,7 @@ template <Accelerator A, unsigned kParts>
 class Integrator {
 public:
     Integrator(const Scene& scene, const A& accelerator, const RenderPlan& plan, Workspace& workspace)
-        : scene_(scene),
-          accelerator_(accelerator),
-          plan_(plan),
-          work_(workspace),
-          branching_(scene, plan, workspace.stacks, workspace.counts) {}
+        : scene_(scene), accelerator_(accelerator), plan_(plan), work_(workspace), branching_(scene, plan) {}
 
     // To be called once for each plan and workspace, before radiance().
     void prepare() { work_.shadow_origins.decide(scene_.geometry, plan_.lights, accelerator_); }
@@ -45,141 +43,140 @@ public:
     // picture. `stop()` is asked before each wave; false, and no answer, when it said so.
     template <class Stop>
     [[nodiscard]] bool radiance(std::span<const CameraSample> samples, std::span<glm::vec3> result, Stop&& stop) {
-        start(samples);
-        for (int wave = 0; !work_.lanes.empty(); ++wave) {
+        work_.rays.clear(RayOrder::divergent);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            work_.rays.push({samples[i].ray.origin, samples[i].ray.direction, kInfinity});
+            work_.lanes.pixel[i] = samples[i].sampler.pixel();
+            work_.lanes.index[i] = samples[i].sampler.index();
+        }
+        return radiance(result, stop);
+    }
+
+    // The same of the workspace's rays, where also pixel and index of their lanes are set.
+    template <class Stop>
+    [[nodiscard]] bool radiance(std::span<glm::vec3> result, Stop&& stop) {
+        start();
+        for (int wave = 0; work_.lanes.count > 0; ++wave) {
             if (stop()) return false;
-            trace(order_of_wave(wave, plan_.camera.lens_radius > 0.0f, (kParts & kernel_part::fuzzy) != 0));
+            work_.rays.order = order_of_wave(wave, plan_.camera.lens_radius > 0.0f, (kParts & kernel_part::fuzzy) != 0);
+            accelerator_.closest_hits(work_.rays, work_.hits);
             meet_surfaces();
-            for (std::uint32_t i = 0; i < plan_.lights.size(); ++i) {
-                add_light(i, wave);
-            }
-            go_on();
-            retire(result);
+            for (std::uint32_t i = 0; i < plan_.lights.size() && work_.vertices.any_lit; ++i) add_light(i, wave);
+            collect();
+            go_on(result);
         }
         return true;
     }
 
 private:
-    void start(std::span<const CameraSample> samples) {
-        work_.counts.camera += samples.size();
+    void start() {
+        Lanes& lanes = work_.lanes;
+        const auto n = static_cast<std::size_t>(work_.rays.count);
+        work_.counts.camera += n;
         work_.stacks.clear();
-        work_.stacks.make_room(samples.size());
-        work_.lanes.clear();
-        for (const CameraSample& sample : samples) {
-            Lane& lane = work_.lanes.add();
-            lane.sampler = sample.sampler;
-            lane.sum = glm::vec3(0.0f);
-            lane.top = BranchStacks::kEmpty;
-            lane.sample = static_cast<std::uint32_t>(work_.lanes.size() - 1);
-            Branch& branch = work_.stacks.push(lane.top);
-            branch.origin = sample.ray.origin;
-            branch.direction = sample.ray.direction;
-            branch.throughput = glm::vec3(1.0f);
-            branch.path = 1;
-            branch.bounces = 0;
-            if constexpr ((kParts & kernel_part::glass) != 0) work_.stacks.medium(lane.top) = plan_.medium;
+        lanes.count = n;
+        std::iota(lanes.sample, lanes.sample + n, 0u);
+        std::fill_n(lanes.path, n, 1u);
+        std::fill_n(lanes.bounces, n, 0);
+        std::fill_n(lanes.waiting, n, BranchStacks::kEmpty);
+        for (int i = 0; i < 3; ++i) {
+            std::fill_n(lanes.sum[i], n, 0.0f);
+            std::fill_n(lanes.throughput[i], n, 1.0f);
         }
-    }
-
-    // Follows the top branch of every lane to the first surface.
-    void trace(RayOrder order) {
-        work_.rays.clear(order);
-        for (const Lane& lane : work_.lanes) {
-            const Branch& branch = work_.stacks[lane.top];
-            work_.rays.push({branch.origin, branch.direction, kInfinity});
-        }
-        accelerator_.closest_hits(work_.rays, work_.hits);
+        if constexpr ((kParts & kernel_part::glass) != 0) std::fill_n(work_.media.begin(), n, plan_.medium);
     }
 
     // Adds the background to lanes whose ray has left the scene, and lists the vertices of the others.
     void meet_surfaces() {
-        work_.met.clear();
-        for (std::uint32_t i = 0; i < work_.lanes.size(); ++i) {
-            if (work_.hits.primitive[i] != kNoPrimitive) {
-                work_.met.add() = i;
-                continue;
-            }
-            Lane& lane = work_.lanes[i];
-            const Branch& branch = work_.stacks[lane.top];
-            lane.sum += branch.throughput * background(branch.direction);
-            const std::uint32_t below = branch.below;
-            work_.stacks.release(lane.top);
-            lane.top = below;
+        Vertices& vertices = work_.vertices;
+        std::size_t n = 0;
+        for (std::uint32_t i = 0; i < work_.lanes.count; ++i) {
+            work_.met[n] = i;
+            n += work_.hits.primitive[i] != kNoPrimitive ? 1 : 0;
         }
-        find_surface_points(scene_, work_.rays, work_.hits, work_.met.all(), work_.points);
-        work_.vertices.clear();
-        for (const std::uint32_t i : work_.met) {
-            const Material& m = scene_.materials[work_.points.material[work_.vertices.size()]];
-            Vertex& v = work_.vertices.add();
-            v.wo = -glm::vec3(work_.rays.direction[0][i], work_.rays.direction[1][i], work_.rays.direction[2][i]);
-            v.material = &m;
-            v.highlight = plan_.highlights && m.has_highlight();
-            v.lit = v.highlight || m.has_diffuse();
-            v.direct = glm::vec3(0.0f);
+        vertices.count = n;
+        if (n < work_.lanes.count) add_background();
+        find_surface_points(scene_, work_.rays, work_.hits, std::span(work_.met).first(n), vertices.points);
+        for (int axis = 0; axis < 3; ++axis) {
+            const float* direction = work_.rays.direction[axis];
+            for (std::size_t k = 0; k < n; ++k) vertices.wo[axis][k] = -direction[work_.met[k]];
         }
+        vertices.set_materials(scene_.materials, plan_.highlights);
     }
 
-    [[nodiscard]] glm::vec3 background(glm::vec3 d) const {
-        return plan_.background_is_color ? scene_.environment.color : scene_.environment.radiance(d);
+    void add_background() {
+        for (std::size_t i = 0; i < work_.lanes.count; ++i) {
+            if (work_.hits.primitive[i] != kNoPrimitive) continue;
+            const auto& d = work_.rays.direction;
+            work_.lanes.add_light(i, plan_.background_is_color ? scene_.environment.color
+                                                               : scene_.environment.radiance({d[0][i], d[1][i], d[2][i]}));
+        }
     }
 
     // Adds light i to all vertices that it reaches, with one shadow ray each and only where it would show.
     void add_light(std::uint32_t i, int wave) {
         const Light& light = plan_.lights[i];
+        DirectLight& direct = work_.direct_light;
+        if constexpr ((kParts & kernel_part::soft) != 0) {
+            if (light.has_area()) choose_points(i);
+        }
+        direct.reflect(light, work_.vertices);
+        if (!plan_.shadows) return direct.add(work_.vertices);
         const bool at_light = work_.shadow_origins.at_light(i);
-        const bool plain = is_plain_point(light);
         RayBatch& rays = work_.shadow_rays;
         rays.clear(order_of_shadows(wave, at_light));
-        for (std::uint32_t k = 0; k < work_.vertices.size(); ++k) {
-            Vertex& v = work_.vertices[k];
-            if (!v.lit) continue;
-            const SurfacePoint s = work_.points[k];
-            glm::vec2 u(0.5f);
-            if constexpr ((kParts & kernel_part::soft) != 0) {
-                const Lane& lane = work_.lanes[work_.met[k]];
-                if (light.has_area()) u = lane.sampler.square(hash(work_.stacks[lane.top].path, i));
-            }
-            const LightSample l = plain ? sample_plain_point(light, s.p) : sample_light(light, s.p, u);
-            const glm::vec3 light_in = reflected_light(l, s, *v.material, v.wo, v.highlight);
-            if (light_in == glm::vec3(0.0f)) continue;
-            if (!plan_.shadows) {
-                v.direct += light_in;
-                continue;
-            }
-            const auto n = static_cast<std::size_t>(rays.count);
-            work_.shadow_light[n] = light_in;
-            work_.shadow_vertex[n] = k;
-            rays.push(shadow_ray(light, l, s, at_light));
-        }
+        direct.cast(light, at_light, work_.vertices, rays);
         if (rays.count == 0) return;
         work_.counts.shadow += static_cast<std::uint64_t>(rays.count);
         accelerator_.occluded(rays, work_.blocked);
-        for (std::size_t n = 0; n < static_cast<std::size_t>(rays.count); ++n) {
-            if (!work_.blocked[n]) work_.vertices[work_.shadow_vertex[n]].direct += work_.shadow_light[n];
+        direct.add(work_.blocked, work_.vertices);
+    }
+
+    // Where on light i each vertex looks.
+    void choose_points(std::uint32_t i) {
+        const Lanes& lanes = work_.lanes;
+        const std::size_t n = work_.vertices.count;
+        auto& u = work_.direct_light.u;
+        const bool all = n == lanes.count;  // then vertices and lanes have the same places
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t lane = work_.met[k];
+            work_.dimensions[k] = hash(lanes.path[lane], i);
+            if (all) continue;
+            work_.pixels[k] = lanes.pixel[lane];
+            work_.indices[k] = lanes.index[lane];
+        }
+        Sampler::squares(plan_.sampler, all ? lanes.pixel : work_.pixels, all ? lanes.index : work_.indices, work_.dimensions, n,
+                         u[0], u[1]);
+    }
+
+    // Adds each vertex's light to its lane.
+    void collect() {
+        const Vertices& v = work_.vertices;
+        for (int axis = 0; axis < 3; ++axis) {
+            float* sum = work_.lanes.sum[axis];
+            const float* throughput = work_.lanes.throughput[axis];
+            for (std::size_t k = 0; k < v.count; ++k) {
+                const std::size_t lane = work_.met[k];
+                sum[lane] += throughput[lane] * (v.emission[axis][k] + v.direct[axis][k]);
+            }
         }
     }
 
-    // Adds each vertex's light to its lane, and puts the branches that go on from there in place of the one that came.
-    void go_on() {
-        work_.stacks.make_room(work_.vertices.size() * Branching<kParts>::kMaxChildren);
-        for (std::uint32_t k = 0; k < work_.vertices.size(); ++k) {
-            const Vertex& v = work_.vertices[k];
-            Lane& lane = work_.lanes[work_.met[k]];
-            lane.sum += work_.stacks[lane.top].throughput * (v.material->emission + v.direct);
-            branching_.replace(lane.top, work_.points[k], *v.material, v.wo, lane.sampler);
+    // Lets every lane follow its next ray, hands out the sums of those that have none, and closes the ranks.
+    void go_on(std::span<glm::vec3> result) {
+        Lanes& lanes = work_.lanes;
+        std::size_t kept = 0, k = 0;
+        if constexpr ((kParts & kernel_part::glass) != 0) work_.stacks.make_room(work_.vertices.count);
+        for (std::size_t lane = 0; lane < lanes.count; ++lane) {
+            const bool met = Branching<kParts>::kAny && k < work_.vertices.count && work_.met[k] == lane;
+            if (met ? branching_.follow(work_, k++, lane, kept) : branching_.resume(work_, lane, kept)) {
+                lanes.move_sample(lane, kept++);
+            } else {
+                result[lanes.sample[lane]] = {lanes.sum[0][lane], lanes.sum[1][lane], lanes.sum[2][lane]};
+            }
         }
-    }
-
-    // Hands out the sums of lanes without branches and closes the ranks.
-    void retire(std::span<glm::vec3> result) {
-        std::size_t kept = 0;
-        for (const Lane& lane : work_.lanes) {
-            if (lane.top == BranchStacks::kEmpty)
-                result[lane.sample] = lane.sum;
-            else
-                work_.lanes[kept++] = lane;
-        }
-        work_.lanes.keep(kept);
+        lanes.count = kept;
+        work_.rays.count = static_cast<int>(kept);
     }
 
     const Scene& scene_;

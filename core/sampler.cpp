@@ -54,16 +54,48 @@ struct SobolSeeds {
     }
 };
 
-// A plain loop, of which compilers make vector instructions; integers and powers of two have the same bits in all of them.
-[[gnu::always_inline]] inline void sobol_squares(const SobolSeeds& seeds, std::uint32_t first, float* x, float* y) {
-    for (int k = 0; k < Sampler::kRun; ++k) {
-        const std::uint32_t i = seeds.shuffled(first + static_cast<std::uint32_t>(k));
-        x[k] = seeds.x(i);
-        y[k] = seeds.y(i);
+// The dimension of each sample.
+struct ByLane {
+    const std::uint32_t* dimension;
+    std::uint32_t operator[](std::size_t k) const { return dimension[k]; }
+};
+struct OfAll {
+    std::uint32_t dimension;
+    std::uint32_t operator[](std::size_t) const { return dimension; }
+};
+
+// Plain loops, of which compilers make vector instructions; integers and powers of two have the same bits in all of them.
+template <class Dimension>
+[[gnu::always_inline]] inline void sobol_squares(const std::uint32_t* pixel, const std::uint32_t* index, Dimension dimension,
+                                                 std::size_t n, float* x, float* y) {
+    for (std::size_t first = 0; first < n; first += Sampler::kRun) {
+#pragma GCC ivdep
+        for (std::size_t k = first; k < first + Sampler::kRun; ++k) {
+            const SobolSeeds seeds(hash(pixel[k], dimension[k]));
+            const std::uint32_t i = seeds.shuffled(index[k]);
+            x[k] = seeds.x(i);
+            y[k] = seeds.y(i);
+        }
     }
 }
-[[gnu::target("avx2")]] void sobol_squares_avx2(const SobolSeeds& seeds, std::uint32_t first, float* x, float* y) {
-    sobol_squares(seeds, first, x, y);
+template <class Dimension>
+[[gnu::target("avx2")]] void sobol_squares_avx2(const std::uint32_t* pixel, const std::uint32_t* index, Dimension dimension,
+                                                std::size_t n, float* x, float* y) {
+    sobol_squares(pixel, index, dimension, n, x, y);
+}
+
+template <class Dimension>
+void squares_of(SamplerKind kind, const std::uint32_t* pixel, const std::uint32_t* index, Dimension dimension, std::size_t n,
+                float* x, float* y) {
+    if (kind == SamplerKind::sobol) {
+        return isa_in_use() == Isa::baseline ? sobol_squares(pixel, index, dimension, n, x, y)
+                                             : sobol_squares_avx2(pixel, index, dimension, n, x, y);
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+        const glm::vec2 p = Sampler(kind, pixel[k], index[k]).square(dimension[k]);
+        x[k] = p.x;
+        y[k] = p.y;
+    }
 }
 
 // A random permutation of 0..n-1 without a table (Kensler 2013, "Correlated Multi-Jittered Sampling").
@@ -114,18 +146,14 @@ std::uint32_t regular_cell(std::uint32_t index, std::uint32_t dimension) {
 
 }  // namespace
 
-void Sampler::squares(std::uint32_t dimension, float* x, float* y) const noexcept {
-    if (kind_ != SamplerKind::sobol) {
-        for (int k = 0; k < kRun; ++k) {
-            const glm::vec2 p = at(index_ + static_cast<std::uint32_t>(k)).square(dimension);
-            x[k] = p.x;
-            y[k] = p.y;
-        }
-        return;
-    }
-    const SobolSeeds seeds(hash(pixel_, dimension));
-    if (isa_in_use() == Isa::baseline) return sobol_squares(seeds, index_, x, y);
-    sobol_squares_avx2(seeds, index_, x, y);
+void Sampler::squares(SamplerKind kind, const std::uint32_t* pixel, const std::uint32_t* index, const std::uint32_t* dimension,
+                      std::size_t n, float* x, float* y) noexcept {
+    squares_of(kind, pixel, index, ByLane{dimension}, n, x, y);
+}
+
+void Sampler::squares(SamplerKind kind, const std::uint32_t* pixel, const std::uint32_t* index, std::uint32_t dimension,
+                      std::size_t n, float* x, float* y) noexcept {
+    squares_of(kind, pixel, index, OfAll{dimension}, n, x, y);
 }
 
 glm::vec2 Sampler::square(std::uint32_t dimension) const noexcept {

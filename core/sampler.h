@@ -3,6 +3,7 @@
 // Invariant: values lie in [0, 1); any two dimensions of a pixel are independently scrambled.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include <glm/glm.hpp>
@@ -34,18 +35,22 @@ public:
           pixel_(hash(hash(hash(x, y), static_cast<std::uint32_t>(seed)),
                       static_cast<std::uint32_t>(seed >> 32) ^ static_cast<std::uint32_t>(index >> 32))) {}
 
-    // Sample `index` of the same pixel, where both are below 2^32.
-    [[nodiscard]] Sampler at(std::uint32_t index) const {
-        Sampler other = *this;
-        other.index_ = index;
-        return other;
-    }
+    // By the parts that lanes keep of it: pixel() and index().
+    Sampler(SamplerKind kind, std::uint32_t pixel, std::uint32_t index) : kind_(kind), index_(index), pixel_(pixel) {}
+    // What stands for the pixel and the seed, and below 2^32 samples for all samples of the pixel.
+    [[nodiscard]] std::uint32_t pixel() const { return pixel_; }
+    [[nodiscard]] std::uint32_t index() const { return index_; }
 
     // A point of the unit square for `dimension`, a name such as hash(path, purpose).
     [[nodiscard]] glm::vec2 square(std::uint32_t dimension) const noexcept;
-    // square() of this sample and the kRun - 1 that follow, for less than one by one.
-    static constexpr int kRun = 8;
-    void squares(std::uint32_t dimension, float* x, float* y) const noexcept;
+    // square() of many samples at once, given by their pixel() and index(); all arrays are read and written up to the next
+    // multiple of kRun.
+    static constexpr std::size_t kRun = 8;
+    static void squares(SamplerKind kind, const std::uint32_t* pixel, const std::uint32_t* index, const std::uint32_t* dimension,
+                        std::size_t n, float* x, float* y) noexcept;
+    // The same where all ask for one dimension.
+    static void squares(SamplerKind kind, const std::uint32_t* pixel, const std::uint32_t* index, std::uint32_t dimension,
+                        std::size_t n, float* x, float* y) noexcept;
     // A point of the unit interval; use another dimension than for square().
     [[nodiscard]] float interval(std::uint32_t dimension) const noexcept;
 

@@ -14,31 +14,6 @@ Sampler pixel_sampler(const KernelInput& in, int x, int y) {
     return {in.plan.sampler, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, in.plan.seed};
 }
 
-// The camera ray of a sample of the pixel, at the position that its sampler (or the pixel's centre) gives.
-void set_camera_sample(const KernelInput& in, int x, int y, const Sampler& sampler, CameraSample& sample) {
-    const glm::vec2 jitter = in.plan.jitter ? sampler.square(dimension::pixel) : glm::vec2(0.5f);
-    const glm::vec2 lens = in.camera.has_lens() ? disk_from_square(sampler.square(dimension::lens)) : glm::vec2(0.0f);
-    sample.ray = in.camera.ray(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y, lens);
-    sample.sampler = sampler;
-}
-
-// The same for a run of samples of one pixel, from that of `sampler` on, through a pinhole.
-constexpr int kRun = Sampler::kRun;
-static_assert(kRun == Camera::kRunOfRays);
-struct Run {
-    float direction[3][kRun];
-
-    Run(const KernelInput& in, int x, int y, const Sampler& sampler) {
-        float at_x[kRun], at_y[kRun];
-        sampler.squares(dimension::pixel, at_x, at_y);
-        for (int k = 0; k < kRun; ++k) {
-            at_x[k] = static_cast<float>(x) + at_x[k];
-            at_y[k] = static_cast<float>(y) + at_y[k];
-        }
-        in.camera.pinhole_rays(at_x, at_y, direction);
-    }
-};
-
 bool finite(glm::vec3 c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
 
 struct Job {
@@ -73,7 +48,7 @@ template <class A, unsigned kParts, class Take>
 class Batcher {
 public:
     Batcher(const Job& job, Take take)
-        : in_(job.in), integrator_(in_.scene, std::get<A>(in_.accelerator), in_.plan, job.work), take_(take) {
+        : in_(job.in), work_(job.work), integrator_(in_.scene, std::get<A>(in_.accelerator), in_.plan, job.work), take_(take) {
         if (job.work.prepared_for == in_.generation) return;
         integrator_.prepare();
         job.work.prepared_for = in_.generation;
@@ -81,48 +56,60 @@ public:
 
     // Samples [first, last) of a pixel.
     void add(std::size_t cell, int x, int y, int first, int last) {
-        const Sampler pixel = pixel_sampler(in_, x, y);
-        int k = first;
-        if (in_.plan.jitter && !in_.camera.has_lens()) {
-            // Half a run costs less than its rays one by one.
-            for (; last - k >= kRun / 2 && !stopped_; k += std::min(kRun, last - k)) {
-                const Run run(in_, x, y, pixel.at(static_cast<std::uint32_t>(k)));
-                for (int i = 0; i < std::min(kRun, last - k) && !stopped_; ++i) {
-                    CameraSample& sample = next(cell);
-                    sample.ray.origin = in_.camera.eye();
-                    sample.ray.direction = {run.direction[0][i], run.direction[1][i], run.direction[2][i]};
-                    sample.sampler = pixel.at(static_cast<std::uint32_t>(k + i));
-                    if (count_ == samples_.size()) flush();
-                }
-            }
-        }
-        for (; k < last && !stopped_; ++k) {
-            set_camera_sample(in_, x, y, pixel.at(static_cast<std::uint32_t>(k)), next(cell));
-            if (count_ == samples_.size()) flush();
+        const std::uint32_t pixel = pixel_sampler(in_, x, y).pixel();
+        for (int k = first; k < last && !stopped_; ++k) {
+            cells_[count_] = cell;
+            x_[count_] = static_cast<float>(x);
+            y_[count_] = static_cast<float>(y);
+            work_.lanes.pixel[count_] = pixel;
+            work_.lanes.index[count_] = static_cast<std::uint32_t>(k);
+            if (++count_ == kRayBatch) flush();
         }
     }
     // Traces what has been gathered. False when the frame is not wanted any more.
     bool flush() {
+        set_rays();
         const auto stale = [this] { return in_.current_generation.load(std::memory_order_relaxed) != in_.generation; };
-        stopped_ = stopped_ || !integrator_.radiance(std::span(samples_).first(count_), radiance_, stale);
+        stopped_ = stopped_ || !integrator_.radiance(radiance_, stale);
         for (std::size_t i = 0; i < count_ && !stopped_; ++i) take_(cells_[i], radiance_[i]);
         count_ = 0;
         return !stopped_;
     }
 
 private:
-    CameraSample& next(std::size_t cell) {
-        cells_[count_] = cell;
-        return samples_[count_++];
+    // The camera rays, at the positions that the samplers (or the pixels' centres) give.
+    void set_rays() {
+        const Lanes& lanes = work_.lanes;
+        const auto squares = [&](std::uint32_t dimension) {
+            Sampler::squares(in_.plan.sampler, lanes.pixel, lanes.index, dimension, count_, u_[0], u_[1]);
+        };
+        if (in_.plan.jitter) {
+            squares(dimension::pixel);
+        } else {
+            std::fill(u_[0], u_[2], 0.5f);
+        }
+        for (std::size_t i = 0; i < count_; ++i) {
+            x_[i] += u_[0][i];
+            y_[i] += u_[1][i];
+        }
+        if (!in_.camera.has_lens()) return in_.camera.pinhole_rays(x_, y_, count_, work_.rays);
+        squares(dimension::lens);
+        work_.rays.clear(RayOrder::coherent);
+        for (std::size_t i = 0; i < count_; ++i) {
+            Ray ray = in_.camera.ray(x_[i], y_[i], disk_from_square({u_[0][i], u_[1][i]}));
+            ray.t_max = kInfinity;
+            work_.rays.push(ray);
+        }
     }
 
     const KernelInput& in_;
+    Workspace& work_;
     Integrator<A, kParts> integrator_;
     Take take_;
     bool stopped_ = false;
     std::size_t count_ = 0;
     std::array<std::size_t, kRayBatch> cells_;
-    std::array<CameraSample, kRayBatch> samples_;
+    alignas(64) float x_[kRayBatch], y_[kRayBatch], u_[2][kRayBatch];
     std::array<glm::vec3, kRayBatch> radiance_;
 };
 

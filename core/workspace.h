@@ -3,15 +3,16 @@
 #pragma once
 
 #include <array>
-#include <span>
+#include <cstdint>
 
 #include "accel/ray_batch.h"
 #include "core/branch_stacks.h"
-#include "core/material.h"
+#include "core/direct_light.h"
+#include "core/medium_stack.h"
 #include "core/ray_counts.h"
 #include "core/sampler.h"
 #include "core/shadow_origins.h"
-#include "core/surface_points.h"
+#include "core/vertices.h"
 
 namespace glint {
 
@@ -21,40 +22,30 @@ struct CameraSample {
     Sampler sampler;
 };
 
-// One sample on its way: the sum of its light so far and the branch it follows next.
-struct Lane {
-    Sampler sampler;
-    glm::vec3 sum{0.0f};
-    std::uint32_t top = BranchStacks::kEmpty;
-    std::uint32_t sample = 0;  // its place in the batch
-};
+// Samples on their way, structure of arrays: of each the sum of its light so far and what goes with the ray it follows, which
+// has the same place in a batch of rays.
+struct alignas(64) Lanes {
+    std::size_t count = 0;
+    std::uint32_t pixel[kRayBatch], index[kRayBatch];  // of its Sampler
+    std::uint32_t sample[kRayBatch];                   // its place among the answers
+    std::uint32_t waiting[kRayBatch];                  // the top of its stack of branches that come later
+    float sum[3][kRayBatch];
+    float throughput[3][kRayBatch];
+    std::uint32_t path[kRayBatch];  // see Branch
+    int bounces[kRayBatch];
 
-// What goes on where a lane's branch has met a surface; the point itself is apart.
-struct Vertex {
-    glm::vec3 wo;
-    const Material* material;
-    bool highlight, lit;  // whether the material shows highlights, or any light of a source
-    glm::vec3 direct;     // light arriving straight from the lights, reflected
-};
-
-// Up to one item a lane; items keep their old contents until they are written.
-template <class T>
-class PerLane {
-public:
-    void clear() { size_ = 0; }
-    T& add() { return items_[size_++]; }
-    [[nodiscard]] std::span<const T> all() const { return {items_.data(), size_}; }
-    // Drops all but the first n.
-    void keep(std::size_t n) { size_ = n; }
-    [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] bool empty() const { return size_ == 0; }
-    T& operator[](std::size_t i) { return items_[i]; }
-    T* begin() { return items_.data(); }
-    T* end() { return items_.data() + size_; }
-
-private:
-    std::array<T, kRayBatch> items_;
-    std::size_t size_ = 0;
+    [[nodiscard]] Sampler sampler(SamplerKind kind, std::size_t lane) const { return {kind, pixel[lane], index[lane]}; }
+    void add_light(std::size_t lane, glm::vec3 light) {
+        for (int i = 0; i < 3; ++i) sum[i][lane] += throughput[i][lane] * light[i];
+    }
+    // Moves what belongs to a sample, but not the ray it follows and what goes with that.
+    void move_sample(std::size_t from, std::size_t to) {
+        pixel[to] = pixel[from];
+        index[to] = index[from];
+        sample[to] = sample[from];
+        waiting[to] = waiting[from];
+        for (int i = 0; i < 3; ++i) sum[i][to] = sum[i][from];
+    }
 };
 
 struct Workspace {
@@ -62,17 +53,17 @@ struct Workspace {
     ShadowOrigins shadow_origins;
     std::uint64_t prepared_for = ~std::uint64_t{0};  // the generation whose lights they are of
     BranchStacks stacks;
-    PerLane<Lane> lanes;
-    // Where branches have met surfaces: of which lanes, and what is there. All three have the same order.
-    PerLane<std::uint32_t> met;
-    SurfacePoints points;
-    PerLane<Vertex> vertices;
-    RayBatch rays, shadow_rays;
+    Lanes lanes;
+    std::array<MediumStack, kRayBatch> media;  // what the ray of each lane travels in, where there is glass
+    RayBatch rays, shadow_rays;                // rays: of the lanes
     HitBatch hits;
     OccludedBatch blocked;
-    // What each shadow ray carries, and the vertex it is for.
-    std::array<glm::vec3, kRayBatch> shadow_light;
-    std::array<std::uint32_t, kRayBatch> shadow_vertex;
+    // Where rays have met surfaces, and of which lanes.
+    Vertices vertices;
+    std::array<std::uint32_t, kRayBatch> met;
+    DirectLight direct_light;
+    // The random numbers that vertices ask for.
+    alignas(64) std::uint32_t pixels[kRayBatch], indices[kRayBatch], dimensions[kRayBatch];
 };
 
 }  // namespace glint

@@ -18,15 +18,24 @@ protected:
 };
 
 TEST_P(RunOfSamples, HasTheSamplersSquares) {
-    for (std::size_t kind = 0; kind < kSamplerNames.size(); ++kind) {
-        for (const std::uint32_t first : {0u, 1u, 8u, 60u, 4093u}) {
-            const Sampler pixel(static_cast<SamplerKind>(kind), 17, 29, 0, 123456789012345u);
-            float x[Sampler::kRun], y[Sampler::kRun];
-            pixel.at(first).squares(3, x, y);
-            for (std::uint32_t k = 0; k < Sampler::kRun; ++k) {
-                const Sampler alone(static_cast<SamplerKind>(kind), 17, 29, first + k, 123456789012345u);
-                EXPECT_EQ(glm::vec2(x[k], y[k]), alone.square(3)) << kSamplerNames[kind] << ' ' << first << ' ' << k;
-            }
+    constexpr std::size_t kMany = 3 * Sampler::kRun, kAsked = kMany - 3;
+    for (std::size_t i = 0; i < kSamplerNames.size(); ++i) {
+        const auto kind = static_cast<SamplerKind>(i);
+        std::uint32_t pixel[kMany], index[kMany], dimension[kMany];
+        for (std::uint32_t k = 0; k < kMany; ++k) {
+            pixel[k] = Sampler(kind, 17 + k / 5, 29, 0, 123456789012345u).pixel();
+            index[k] = k % 5 + (k < 12 ? 0u : 4093u);
+            dimension[k] = k % 4 == 0 ? 0u : hash(k, 3);
+        }
+        float x[kMany], y[kMany];
+        Sampler::squares(kind, pixel, index, dimension, kAsked, x, y);
+        for (std::uint32_t k = 0; k < kAsked; ++k) {
+            const Sampler alone(kind, 17 + k / 5, 29, index[k], 123456789012345u);
+            EXPECT_EQ(glm::vec2(x[k], y[k]), alone.square(dimension[k])) << kSamplerNames[i] << ' ' << k;
+        }
+        Sampler::squares(kind, pixel, index, 3, kAsked, x, y);
+        for (std::uint32_t k = 0; k < kAsked; ++k) {
+            EXPECT_EQ(glm::vec2(x[k], y[k]), Sampler(kind, pixel[k], index[k]).square(3)) << kSamplerNames[i] << ' ' << k;
         }
     }
 }
@@ -36,18 +45,20 @@ TEST_P(RunOfSamples, HasTheCamerasRays) {
     pose.eye = {3.0f, -7.0f, 1e4f};
     pose.target = {0.1f, 0.2f, -0.3f};
     const Camera camera(pose, 1000, 601);
-    for (std::uint32_t i = 0; i < 200; ++i) {
-        float x[Camera::kRunOfRays], y[Camera::kRunOfRays], d[3][Camera::kRunOfRays];
-        for (std::uint32_t k = 0; k < Camera::kRunOfRays; ++k) {
-            x[k] = static_cast<float>(hash(i, k) >> 8) * 0x1p-24f * 1000.0f;
-            y[k] = static_cast<float>(hash(k, i) >> 8) * 0x1p-24f * 601.0f;
-        }
-        camera.pinhole_rays(x, y, d);
-        for (int k = 0; k < Camera::kRunOfRays; ++k) {
-            const Ray alone = camera.ray(x[k], y[k], glm::vec2(0.0f));
-            EXPECT_EQ(alone.origin, camera.eye());
-            EXPECT_EQ(alone.direction, glm::vec3(d[0][k], d[1][k], d[2][k]));
-        }
+    constexpr std::uint32_t kMany = 200, kAsked = kMany - 5;
+    float x[kMany], y[kMany];
+    for (std::uint32_t k = 0; k < kMany; ++k) {
+        x[k] = static_cast<float>(hash(k, 1) >> 8) * 0x1p-24f * 1000.0f;
+        y[k] = static_cast<float>(hash(1, k) >> 8) * 0x1p-24f * 601.0f;
+    }
+    RayBatch rays;
+    camera.pinhole_rays(x, y, kAsked, rays);
+    ASSERT_EQ(rays.count, static_cast<int>(kAsked));
+    for (int k = 0; k < rays.count; ++k) {
+        const Ray alone = camera.ray(x[k], y[k], glm::vec2(0.0f));
+        EXPECT_EQ(rays[k].origin, alone.origin);
+        EXPECT_EQ(rays[k].direction, alone.direction);
+        EXPECT_EQ(rays[k].t_max, kInfinity);
     }
 }
 

@@ -1,0 +1,40 @@
+#include "core/vertices.h"
+
+#include <algorithm>
+
+namespace glint {
+namespace {
+
+void fill(float (&rows)[3][kRayBatch], std::size_t first, std::size_t last, glm::vec3 v) {
+    for (int i = 0; i < 3; ++i) std::fill(rows[i] + first, rows[i] + last, v[i]);
+}
+
+}  // namespace
+
+void Vertices::set_materials(std::span<const Material> materials, bool highlights) noexcept {
+    any_lit = any_highlit = false;
+    const std::uint32_t* material = points.material;
+    for (std::size_t first = 0; first < count;) {
+        // Neighbours are mostly of one material.
+        std::size_t last = first + 1;
+        while (last < count && material[last] == material[first]) ++last;
+        const Material& m = materials[material[first]];
+        const bool shiny = highlights && m.has_highlight(), shows = shiny || m.has_diffuse();
+        any_highlit = any_highlit || shiny;
+        any_lit = any_lit || shows;
+        fill(diffuse, first, last, m.diffuse);
+        fill(emission, first, last, m.emission);
+        fill(specular, first, last, shiny ? m.specular : glm::vec3(0.0f));
+        std::fill(highlight_scale + first, highlight_scale + last, m.highlight_scale);
+        std::fill(shininess + first, shininess + last, m.shininess);
+        std::fill(lit + first, lit + last, shows ? 1u : 0u);
+        std::fill(highlit + first, highlit + last, shiny ? 1u : 0u);
+        first = last;
+    }
+    // What lies behind the last vertex is computed with, so it must not be too slow to compute with.
+    std::fill(lit + count, lit + whole_runs(count), 0u);
+    std::fill(highlit + count, highlit + whole_runs(count), 0u);
+    fill(direct, 0, whole_runs(count), glm::vec3(0.0f));
+}
+
+}  // namespace glint
