@@ -1,6 +1,7 @@
 #include "core/surface_points.h"
 
 #include "accel/isa.h"
+#include "core/corner_rows.h"
 #include "core/surface_formulas.h"
 
 namespace glint {
@@ -8,15 +9,16 @@ namespace {
 
 using namespace surface;
 
-constexpr std::size_t kRun = 8;     // hits at once
-constexpr std::size_t kFewest = 3;  // triangles of a run; fewer are computed one by one
+constexpr std::size_t kRun = kCornerRun;  // hits at once
+constexpr std::size_t kFewest = 3;        // triangles of a run; fewer are computed one by one
 static_assert(kRayBatch % kRun == 0, "a run may write behind the last point");
 
 using Row = float[kRun];
 
 // What points on triangles and spheres are computed from.
-struct Triangles {
-    Row direction[3], corner[3][3], normal[3][3], u, v;
+struct alignas(32) Triangles {
+    CornerRows corner, normal;
+    Row direction[3], u, v;
 };
 struct Spheres {
     Row origin[3], direction[3], center[3], t, radius;
@@ -66,11 +68,12 @@ template <bool kSmooth>
     on_spheres(in, points, first);
 }
 
-inline void gather(const std::vector<glm::vec3>& from, const std::array<std::uint32_t, 3>& index, Row (&to)[3][3],
-                   std::size_t k) {
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-        const glm::vec3& v = from[index[corner]];
-        to[corner][0][k] = v.x, to[corner][1][k] = v.y, to[corner][2][k] = v.z;
+// The numbers of a run of rays, which are mostly neighbours; behind the last it stands again.
+inline void read(const float* from, std::span<const std::uint32_t> lanes, Row& to) {
+    if (lanes.size() == kRun && lanes.back() - lanes.front() == kRun - 1) {
+        std::copy_n(from + lanes.front(), kRun, to);
+    } else {
+        for (std::size_t k = 0; k < kRun; ++k) to[k] = from[lanes[std::min(k, lanes.size() - 1)]];
     }
 }
 
@@ -102,42 +105,48 @@ std::size_t count(const HitBatch& hits, std::span<const std::uint32_t> lanes, Pr
     return n;
 }
 
-// Up to kRun hits, of which those on triangles are set; the others get numbers without meaning.
+// Up to kRun hits, of which those on triangles are set, at least one; the others get numbers without meaning.
 void set_triangles(const Scene& scene, const RayBatch& rays, const HitBatch& hits, std::span<const std::uint32_t> lanes,
                    SurfacePoints& points, std::size_t first) {
     const Geometry& g = *scene.geometry;
-    const bool smooth = !scene.normals.empty();
-    Triangles in{};
-    for (std::size_t k = 0; k < lanes.size(); ++k) {
-        const std::uint32_t lane = lanes[k];
-        if (kind_of(hits.primitive[lane]) != PrimitiveKind::triangle) continue;
-        const std::uint32_t i = index_of(hits.primitive[lane]);
-        gather(g.vertices, g.triangles[i], in.corner, k);
-        if (smooth) gather(scene.normals, g.triangles[i], in.normal, k);
-        for (int axis = 0; axis < 3; ++axis) in.direction[axis][k] = rays.direction[axis][lane];
-        in.u[k] = hits.u[lane];
-        in.v[k] = hits.v[lane];
-        points.material[first + k] = scene.material_of[static_cast<std::size_t>(PrimitiveKind::triangle)][i];
+    const std::uint32_t* material = scene.material_of[static_cast<std::size_t>(PrimitiveKind::triangle)].data();
+    // Where there is no triangle, another one of the run is read.
+    std::uint32_t triangle[kRun], some = 0;
+    for (const std::uint32_t lane : lanes) {
+        if (kind_of(hits.primitive[lane]) == PrimitiveKind::triangle) some = index_of(hits.primitive[lane]);
     }
-    smooth ? smooth_triangles_avx2(in, points, first) : flat_triangles_avx2(in, points, first);
+    for (std::size_t k = 0; k < kRun; ++k) {
+        const PrimitiveId id = hits.primitive[lanes[std::min(k, lanes.size() - 1)]];
+        triangle[k] = kind_of(id) == PrimitiveKind::triangle ? index_of(id) : some;
+        points.material[first + k] = material[triangle[k]];
+    }
+    Triangles in;
+    read_corners_avx2(g.vertices, g.triangles, triangle, in.corner);
+    for (int axis = 0; axis < 3; ++axis) read(rays.direction[axis], lanes, in.direction[axis]);
+    read(hits.u, lanes, in.u);
+    read(hits.v, lanes, in.v);
+    if (scene.normals.empty()) return flat_triangles_avx2(in, points, first);
+    read_corners_avx2(scene.normals, g.triangles, triangle, in.normal);
+    smooth_triangles_avx2(in, points, first);
 }
 
 // The same of hits that are all on spheres.
 void set_spheres(const Scene& scene, const RayBatch& rays, const HitBatch& hits, std::span<const std::uint32_t> lanes,
                  SurfacePoints& points, std::size_t first) {
-    Spheres in{};
-    for (std::size_t k = 0; k < lanes.size(); ++k) {
-        const std::uint32_t lane = lanes[k], i = index_of(hits.primitive[lane]);
+    const std::uint32_t* material = scene.material_of[static_cast<std::size_t>(PrimitiveKind::sphere)].data();
+    Spheres in;
+    for (std::size_t k = 0; k < kRun; ++k) {
+        const std::uint32_t i = index_of(hits.primitive[lanes[std::min(k, lanes.size() - 1)]]);
         const Sphere& sphere = scene.geometry->spheres[i];
-        for (int axis = 0; axis < 3; ++axis) {
-            in.origin[axis][k] = rays.origin[axis][lane];
-            in.direction[axis][k] = rays.direction[axis][lane];
-            in.center[axis][k] = sphere.center[axis];
-        }
-        in.t[k] = hits.t[lane];
+        for (int axis = 0; axis < 3; ++axis) in.center[axis][k] = sphere.center[axis];
         in.radius[k] = sphere.radius;
-        points.material[first + k] = scene.material_of[static_cast<std::size_t>(PrimitiveKind::sphere)][i];
+        points.material[first + k] = material[i];
     }
+    for (int axis = 0; axis < 3; ++axis) {
+        read(rays.origin[axis], lanes, in.origin[axis]);
+        read(rays.direction[axis], lanes, in.direction[axis]);
+    }
+    read(hits.t, lanes, in.t);
     spheres_avx2(in, points, first);
 }
 
