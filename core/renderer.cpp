@@ -21,7 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Samples a pixel gets per visit: 1, 1, 2, 4, then this many.
-constexpr int kMaxBatch = 8;
+constexpr int kMaxBatch = 32;
 
 // A frame with everything derived from it once, before any worker sees it.
 struct Order {
