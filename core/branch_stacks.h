@@ -13,11 +13,14 @@
 
 namespace glint {
 
+// The path of camera rays.
+constexpr std::uint32_t kCameraPath = 1;
+
 // A ray still to be followed; it ends nowhere.
 struct Branch {
     glm::vec3 origin, direction;
     glm::vec3 throughput{1.0f};
-    std::uint32_t path = 1;  // names this node of the ray tree; random dimensions hang on it
+    std::uint32_t path = kCameraPath;  // names this node of the ray tree; random dimensions hang on it
     int bounces = 0;
     std::uint32_t below = 0;  // the next node of the same stack, or of the free ones
 };

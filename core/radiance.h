@@ -76,7 +76,7 @@ private:
         work_.stacks.clear();
         lanes.count = n;
         std::iota(lanes.sample, lanes.sample + n, 0u);
-        std::fill_n(lanes.path, n, 1u);
+        std::fill_n(lanes.path, n, kCameraPath);
         std::fill_n(lanes.bounces, n, 0);
         std::fill_n(lanes.waiting, n, BranchStacks::kEmpty);
         for (int i = 0; i < 3; ++i) {
@@ -89,20 +89,27 @@ private:
     // Adds the background to lanes whose ray has left the scene, and lists the vertices of the others.
     void meet_surfaces() {
         Vertices& vertices = work_.vertices;
-        std::size_t n = 0;
-        for (std::uint32_t i = 0; i < work_.lanes.count; ++i) {
-            work_.met[n] = i;
-            n += work_.hits.primitive[i] != kNoPrimitive ? 1 : 0;
+        const std::size_t lanes = work_.lanes.count;
+        vertices.count = 0;
+        for (std::uint32_t i = 0; i < lanes; ++i) {
+            work_.met[vertices.count] = i;
+            vertices.count += work_.hits.primitive[i] != kNoPrimitive ? 1 : 0;
         }
-        vertices.count = n;
-        if (n < work_.lanes.count) add_background();
-        find_surface_points(scene_, work_.rays, work_.hits, std::span(work_.met).first(n), vertices.points);
+        if (!all_met()) add_background();
+        find_surface_points(scene_, work_.rays, work_.hits, std::span(work_.met).first(vertices.count), vertices.points);
         for (int axis = 0; axis < 3; ++axis) {
             const float* direction = work_.rays.direction[axis];
-            for (std::size_t k = 0; k < n; ++k) vertices.wo[axis][k] = -direction[work_.met[k]];
+            if (all_met()) {
+                for (std::size_t k = 0; k < lanes; ++k) vertices.wo[axis][k] = -direction[k];
+            } else {
+                for (std::size_t k = 0; k < vertices.count; ++k) vertices.wo[axis][k] = -direction[work_.met[k]];
+            }
         }
         vertices.set_materials(scene_.materials, plan_.highlights);
     }
+
+    // Then vertices and lanes have the same places.
+    [[nodiscard]] bool all_met() const { return work_.vertices.count == work_.lanes.count; }
 
     void add_background() {
         for (std::size_t i = 0; i < work_.lanes.count; ++i) {
@@ -118,7 +125,7 @@ private:
         const Light& light = plan_.lights[i];
         DirectLight& direct = work_.direct_light;
         if constexpr ((kParts & kernel_part::soft) != 0) {
-            if (light.has_area()) choose_points(i);
+            if (light.has_area()) choose_points(i, wave);
         }
         direct.reflect(light, work_.vertices);
         if (!plan_.shadows) return direct.add(work_.vertices);
@@ -133,20 +140,20 @@ private:
     }
 
     // Where on light i each vertex looks.
-    void choose_points(std::uint32_t i) {
+    void choose_points(std::uint32_t i, int wave) {
         const Lanes& lanes = work_.lanes;
         const std::size_t n = work_.vertices.count;
         auto& u = work_.direct_light.u;
-        const bool all = n == lanes.count;  // then vertices and lanes have the same places
+        if (wave == 0 && all_met()) {
+            return Sampler::squares(plan_.sampler, lanes.pixel, lanes.index, hash(kCameraPath, i), n, u[0], u[1]);
+        }
         for (std::size_t k = 0; k < n; ++k) {
             const std::size_t lane = work_.met[k];
-            work_.dimensions[k] = hash(lanes.path[lane], i);
-            if (all) continue;
             work_.pixels[k] = lanes.pixel[lane];
             work_.indices[k] = lanes.index[lane];
+            work_.dimensions[k] = hash(lanes.path[lane], i);
         }
-        Sampler::squares(plan_.sampler, all ? lanes.pixel : work_.pixels, all ? lanes.index : work_.indices, work_.dimensions, n,
-                         u[0], u[1]);
+        Sampler::squares(plan_.sampler, work_.pixels, work_.indices, work_.dimensions, n, u[0], u[1]);
     }
 
     // Adds each vertex's light to its lane.
@@ -155,6 +162,10 @@ private:
         for (int axis = 0; axis < 3; ++axis) {
             float* sum = work_.lanes.sum[axis];
             const float* throughput = work_.lanes.throughput[axis];
+            if (all_met()) {
+                for (std::size_t k = 0; k < v.count; ++k) sum[k] += throughput[k] * (v.emission[axis][k] + v.direct[axis][k]);
+                continue;
+            }
             for (std::size_t k = 0; k < v.count; ++k) {
                 const std::size_t lane = work_.met[k];
                 sum[lane] += throughput[lane] * (v.emission[axis][k] + v.direct[axis][k]);

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -43,7 +44,8 @@ void along_z_curve(int width, int height, Visit&& visit) {
     }
 }
 
-// Gathers samples into batches, traces them, and hands each answer to take(cell, radiance) in the order they came in.
+// Gathers samples into batches, traces them, and hands the answers to take(cell, its radiances in a row) in the order they came
+// in.
 template <class A, unsigned kParts, class Take>
 class Batcher {
 public:
@@ -57,13 +59,16 @@ public:
     // Samples [first, last) of a pixel.
     void add(std::size_t cell, int x, int y, int first, int last) {
         const std::uint32_t pixel = pixel_sampler(in_, x, y).pixel();
-        for (int k = first; k < last && !stopped_; ++k) {
-            cells_[count_] = cell;
-            x_[count_] = static_cast<float>(x);
-            y_[count_] = static_cast<float>(y);
-            work_.lanes.pixel[count_] = pixel;
-            work_.lanes.index[count_] = static_cast<std::uint32_t>(k);
-            if (++count_ == kRayBatch) flush();
+        for (int k = first; k < last && !stopped_;) {
+            const auto n = std::min(static_cast<std::size_t>(last - k), kRayBatch - count_);
+            std::fill_n(cells_ + count_, n, static_cast<std::uint32_t>(cell));
+            std::fill_n(x_ + count_, n, static_cast<float>(x));
+            std::fill_n(y_ + count_, n, static_cast<float>(y));
+            std::fill_n(work_.lanes.pixel + count_, n, pixel);
+            std::iota(work_.lanes.index + count_, work_.lanes.index + count_ + n, static_cast<std::uint32_t>(k));
+            count_ += n;
+            k += static_cast<int>(n);
+            if (count_ == kRayBatch) flush();
         }
     }
     // Traces what has been gathered. False when the frame is not wanted any more.
@@ -71,7 +76,11 @@ public:
         set_rays();
         const auto stale = [this] { return in_.current_generation.load(std::memory_order_relaxed) != in_.generation; };
         stopped_ = stopped_ || !integrator_.radiance(radiance_, stale);
-        for (std::size_t i = 0; i < count_ && !stopped_; ++i) take_(cells_[i], radiance_[i]);
+        for (std::size_t i = 0; i < count_ && !stopped_;) {
+            const std::size_t first = i;
+            while (i < count_ && cells_[i] == cells_[first]) ++i;
+            take_(cells_[first], std::span<const glm::vec3>(radiance_).subspan(first, i - first));
+        }
         count_ = 0;
         return !stopped_;
     }
@@ -86,7 +95,7 @@ private:
         if (in_.plan.jitter) {
             squares(dimension::pixel);
         } else {
-            std::fill(u_[0], u_[2], 0.5f);
+            for (auto& row : u_) std::fill_n(row, count_, 0.5f);
         }
         for (std::size_t i = 0; i < count_; ++i) {
             x_[i] += u_[0][i];
@@ -108,14 +117,16 @@ private:
     Take take_;
     bool stopped_ = false;
     std::size_t count_ = 0;
-    std::array<std::size_t, kRayBatch> cells_;
+    std::uint32_t cells_[kRayBatch];
     alignas(64) float x_[kRayBatch], y_[kRayBatch], u_[2][kRayBatch];
     std::array<glm::vec3, kRayBatch> radiance_;
 };
 
 template <class A, unsigned kParts>
 bool run_preview(const Job& job) {
-    const auto take = [&](std::size_t cell, glm::vec3 c) { (*job.preview)[cell] = finite(c) ? c : glm::vec3(0.0f); };
+    const auto take = [&](std::size_t cell, std::span<const glm::vec3> light) {
+        (*job.preview)[cell] = finite(light[0]) ? light[0] : glm::vec3(0.0f);
+    };
     Batcher<A, kParts, decltype(take)> batcher(job, take);
     const TileRect& r = job.rect;
     const int columns = preview_blocks(r.x1 - r.x0), rows = preview_blocks(r.y1 - r.y0);
@@ -130,16 +141,19 @@ bool run_preview(const Job& job) {
 template <class A, unsigned kParts>
 bool run(const Job& job) {
     if (job.sums == nullptr) return run_preview<A, kParts>(job);
-    const auto take = [&](std::size_t pixel, glm::vec3 c) {
-        PixelSum& sum = (*job.sums)[pixel];
-        if (!finite(c)) {
-            ++job.work.counts.non_finite;
-            ++sum.rejected;
-            return;
+    const auto take = [&](std::size_t pixel, std::span<const glm::vec3> light) {
+        PixelSum sum = (*job.sums)[pixel];  // a copy, which stays in registers
+        for (const glm::vec3 c : light) {
+            if (!finite(c)) {
+                ++job.work.counts.non_finite;
+                ++sum.rejected;
+                continue;
+            }
+            const double l = luminance(glm::dvec3(c));
+            sum.radiance += glm::dvec3(c);
+            sum.luminance2 += l * l;
         }
-        const double l = luminance(glm::dvec3(c));
-        sum.radiance += glm::dvec3(c);
-        sum.luminance2 += l * l;
+        (*job.sums)[pixel] = sum;
     };
     Batcher<A, kParts, decltype(take)> batcher(job, take);
     const TileRect& r = job.rect;
