@@ -77,11 +77,13 @@ private:
         lanes.count = n;
         std::iota(lanes.sample, lanes.sample + n, 0u);
         std::fill_n(lanes.path, n, kCameraPath);
-        std::fill_n(lanes.bounces, n, 0);
-        std::fill_n(lanes.waiting, n, BranchStacks::kEmpty);
         for (int i = 0; i < 3; ++i) {
             std::fill_n(lanes.sum[i], n, 0.0f);
             std::fill_n(lanes.throughput[i], n, 1.0f);
+        }
+        if constexpr (Branching<kParts>::kAny) {
+            std::fill_n(lanes.bounces, n, 0);
+            std::fill_n(lanes.waiting, n, BranchStacks::kEmpty);
         }
         if constexpr ((kParts & kernel_part::glass) != 0) std::fill_n(work_.media.begin(), n, plan_.medium);
     }
@@ -158,17 +160,17 @@ private:
 
     // Adds each vertex's light to its lane.
     void collect() {
-        const Vertices& v = work_.vertices;
+        Vertices& v = work_.vertices;
         for (int axis = 0; axis < 3; ++axis) {
-            float* sum = work_.lanes.sum[axis];
+            float *sum = work_.lanes.sum[axis], *light = v.direct[axis];
             const float* throughput = work_.lanes.throughput[axis];
-            if (all_met()) {
-                for (std::size_t k = 0; k < v.count; ++k) sum[k] += throughput[k] * (v.emission[axis][k] + v.direct[axis][k]);
-                continue;
+            if (v.any_emission) {
+                for (std::size_t k = 0; k < v.count; ++k) light[k] = v.emission[axis][k] + light[k];
             }
-            for (std::size_t k = 0; k < v.count; ++k) {
-                const std::size_t lane = work_.met[k];
-                sum[lane] += throughput[lane] * (v.emission[axis][k] + v.direct[axis][k]);
+            if (all_met()) {
+                for (std::size_t k = 0; k < v.count; ++k) sum[k] += throughput[k] * light[k];
+            } else {
+                for (std::size_t k = 0; k < v.count; ++k) sum[work_.met[k]] += throughput[work_.met[k]] * light[k];
             }
         }
     }

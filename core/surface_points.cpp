@@ -77,25 +77,26 @@ inline void read(const float* from, std::span<const std::uint32_t> lanes, Row& t
     }
 }
 
-// Asks memory for what the hit triangles are made of, all at once rather than one after the other.
+// Asks memory for what the hit triangles are made of, all at once rather than one after the other; says whether all are such.
 // Inlined, since GCC drops calls of functions that only prefetch.
-[[gnu::always_inline]] inline void fetch_triangles(const Scene& scene, const HitBatch& hits,
+[[gnu::always_inline]] inline bool fetch_triangles(const Scene& scene, const HitBatch& hits,
                                                    std::span<const std::uint32_t> lanes) {
     const Geometry& g = *scene.geometry;
     const auto& materials = scene.material_of[static_cast<std::size_t>(PrimitiveKind::triangle)];
+    std::size_t triangles = 0;
     for (const std::uint32_t lane : lanes) {
         if (kind_of(hits.primitive[lane]) != PrimitiveKind::triangle) continue;
         const std::uint32_t i = index_of(hits.primitive[lane]);
         __builtin_prefetch(&g.triangles[i]);
         __builtin_prefetch(&materials[i]);
+        ++triangles;
     }
-}
-[[gnu::always_inline]] inline void fetch_corners(const Scene& scene, const HitBatch& hits, std::span<const std::uint32_t> lanes) {
-    const Geometry& g = *scene.geometry;
+    if (triangles == 0) return false;
     for (const std::uint32_t lane : lanes) {
         if (kind_of(hits.primitive[lane]) != PrimitiveKind::triangle) continue;
         for (const std::uint32_t v : g.triangles[index_of(hits.primitive[lane])]) __builtin_prefetch(&g.vertices[v]);
     }
+    return triangles == lanes.size();
 }
 
 // How many of the hits are on primitives of this kind.
@@ -155,13 +156,14 @@ void set_spheres(const Scene& scene, const RayBatch& rays, const HitBatch& hits,
 void find_surface_points(const Scene& scene, const RayBatch& rays, const HitBatch& hits, std::span<const std::uint32_t> lanes,
                          SurfacePoints& points) noexcept {
     const bool vectors = isa_in_use() != Isa::baseline;
-    if (vectors) {
-        fetch_triangles(scene, hits, lanes);
-        fetch_corners(scene, hits, lanes);
-    }
+    const bool all_triangles = vectors && fetch_triangles(scene, hits, lanes);
     for (std::size_t first = 0; first < lanes.size(); first += kRun) {
         const auto run = lanes.subspan(first, std::min(kRun, lanes.size() - first));
         std::size_t triangles = 0;
+        if (all_triangles && run.size() >= kFewest) {
+            set_triangles(scene, rays, hits, run, points, first);
+            continue;
+        }
         if (vectors) {
             if (count(hits, run, PrimitiveKind::sphere) == run.size()) {
                 set_spheres(scene, rays, hits, run, points, first);

@@ -12,7 +12,7 @@ void fill(float (&rows)[3][kRayBatch], std::size_t first, std::size_t last, glm:
 }  // namespace
 
 void Vertices::set_materials(std::span<const Material> materials, bool highlights) noexcept {
-    any_lit = any_highlit = false;
+    any_lit = any_highlit = any_emission = false;
     const std::uint32_t* material = points.material;
     for (std::size_t first = 0; first < count;) {
         // Neighbours are mostly of one material.
@@ -22,19 +22,34 @@ void Vertices::set_materials(std::span<const Material> materials, bool highlight
         const bool shiny = highlights && m.has_highlight(), shows = shiny || m.has_diffuse();
         any_highlit = any_highlit || shiny;
         any_lit = any_lit || shows;
+        any_emission = any_emission || m.emission != glm::vec3(0.0f);
         fill(diffuse, first, last, m.diffuse);
-        fill(emission, first, last, m.emission);
-        fill(specular, first, last, shiny ? m.specular : glm::vec3(0.0f));
-        std::fill(highlight_scale + first, highlight_scale + last, m.highlight_scale);
-        std::fill(shininess + first, shininess + last, m.shininess);
         std::fill(lit + first, lit + last, shows ? 1u : 0u);
-        std::fill(highlit + first, highlit + last, shiny ? 1u : 0u);
         first = last;
     }
     // What lies behind the last vertex is computed with, so it must not be too slow to compute with.
     std::fill(lit + count, lit + whole_runs(count), 0u);
-    std::fill(highlit + count, highlit + whole_runs(count), 0u);
     fill(direct, 0, whole_runs(count), glm::vec3(0.0f));
+    if (any_highlit) set_highlights(materials);
+    if (any_emission) {
+        for (std::size_t k = 0; k < count; ++k) fill(emission, k, k + 1, materials[material[k]].emission);
+    }
+}
+
+void Vertices::set_highlights(std::span<const Material> materials) noexcept {
+    const std::uint32_t* material = points.material;
+    for (std::size_t first = 0; first < count;) {
+        std::size_t last = first + 1;
+        while (last < count && material[last] == material[first]) ++last;
+        const Material& m = materials[material[first]];
+        const bool shiny = m.has_highlight();
+        fill(specular, first, last, m.specular);
+        std::fill(highlight_scale + first, highlight_scale + last, m.highlight_scale);
+        std::fill(shininess + first, shininess + last, m.shininess);
+        std::fill(highlit + first, highlit + last, shiny ? 1u : 0u);
+        first = last;
+    }
+    std::fill(highlit + count, highlit + whole_runs(count), 0u);
 }
 
 }  // namespace glint

@@ -23,15 +23,21 @@ struct alignas(64) Vertices {
     std::size_t count = 0;
     SurfacePoints points;
     float wo[3][kRayBatch];
-    // Of the materials; a highlight that is off is black.
-    float diffuse[3][kRayBatch], specular[3][kRayBatch], highlight_scale[kRayBatch], shininess[kRayBatch], emission[3][kRayBatch];
-    std::uint32_t lit[kRayBatch];      // whether light from a source would show
-    std::uint32_t highlit[kRayBatch];  // whether the material shows highlights
-    bool any_lit, any_highlit;
+    // Of the materials.
+    float diffuse[3][kRayBatch];
+    std::uint32_t lit[kRayBatch];  // whether light from a source would show
+    bool any_lit, any_highlit, any_emission;
+    float emission[3][kRayBatch];  // set where there is any
+    // Set where any shows highlights; `highlit` says which do.
+    float specular[3][kRayBatch], highlight_scale[kRayBatch], shininess[kRayBatch];
+    std::uint32_t highlit[kRayBatch];
     float direct[3][kRayBatch];  // light arriving straight from the lights, reflected
 
     // Reads the materials of all points; no light arrives yet.
     void set_materials(std::span<const Material> materials, bool highlights) noexcept;
+
+private:
+    void set_highlights(std::span<const Material> materials) noexcept;
 };
 
 }  // namespace glint
