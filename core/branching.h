@@ -39,12 +39,37 @@ public:
 
     static constexpr bool kAny = (kParts & (kernel_part::mirror | kernel_part::glass)) != 0;
 
+    // To be called before the lanes of a wave follow anything: finds what glass does to the rays of all of them.
+    void divide_at_glass(Workspace& work) {
+        if constexpr ((kParts & kernel_part::glass) == 0) return;
+        const Vertices& vertices = work.vertices;
+        Glass& g = work.glass;
+        std::uint32_t any = 0;
+        for (std::size_t k = 0; k < vertices.count; ++k) {
+            const std::uint32_t material = vertices.points.material[k];
+            g.any[k] = scene_.materials[material].glass ? 1 : 0;
+            g.eta[k] = 1.0;
+            any |= g.any[k];
+            if (g.any[k] == 0) continue;
+            const MediumStack& here = work.media[work.met[k]];
+            MediumStack& beyond = work.media_beyond[k] = here;
+            float ior_from = ior_of(here.top());
+            if (vertices.points.outside[k] != 0) {
+                beyond.enter(material);
+            } else {
+                // A surface left from a medium that was never entered: that of the surface itself.
+                if (!here.contains(material)) ior_from = ior_of(material);
+                beyond.leave(material);
+            }
+            g.eta[k] = static_cast<double>(ior_from) / static_cast<double>(ior_of(beyond.top()));
+        }
+        if (any != 0) g.divide(plan_.fresnel, vertices);
+    }
+
     // Puts the ray that the sample of lane `lane` follows next, whose ray has met vertex `k`, into place `to` <= lane. False
     // when there is none. Where there is glass, one branch may be pushed: room must have been made.
     bool follow(Workspace& work, std::size_t k, std::size_t lane, std::size_t to) {
-        const SurfacePoint s = work.vertices.points[k];
-        const Material& m = scene_.materials[s.material];
-        const glm::vec3 wo(work.vertices.wo[0][k], work.vertices.wo[1][k], work.vertices.wo[2][k]);
+        const Material& m = scene_.materials[work.vertices.points.material[k]];
         From from{work,
                   to,
                   lane,
@@ -53,10 +78,10 @@ public:
                   work.lanes.bounces[lane],
                   false};
         if constexpr ((kParts & kernel_part::mirror) != 0) {
-            if (m.has_mirror()) follow_mirror(from, s, m, wo);
+            if (m.has_mirror()) follow_mirror(from, work.vertices.points[k], m, at(work.vertices.wo, k));
         }
         if constexpr ((kParts & kernel_part::glass) != 0) {
-            if (m.glass) follow_glass(from, s, m, wo);
+            if (m.glass) follow_glass(from, k, m);
         }
         return from.any || resume(work, lane, to);
     }
@@ -112,8 +137,8 @@ private:
 
     // Follows the ray unless its weight is 0 or the depth limit is reached. True when it is followed; the last of several
     // children comes first.
-    bool follow(From& from, const SurfacePoint& s, glm::vec3 side, glm::vec3 direction, glm::vec3 weight,
-                std::uint32_t branch_index, std::uint64_t& counter) {
+    bool follow(From& from, glm::vec3 origin, glm::vec3 direction, glm::vec3 weight, std::uint32_t branch_index,
+                std::uint64_t& counter) {
         const glm::vec3 throughput = from.throughput * weight;
         const float largest = std::max(throughput.x, std::max(throughput.y, throughput.z));
         if (!(largest > 0.0f)) return false;
@@ -126,8 +151,7 @@ private:
         if constexpr ((kParts & kernel_part::glass) != 0) {
             if (from.any) set_aside(from.work, from.to, from.lane);
         }
-        put(from.work, from.to, spawn_origin(s, side), direction, throughput, hash(from.path, branch_index + 0x40000000u),
-            from.bounces + 1);
+        put(from.work, from.to, origin, direction, throughput, hash(from.path, branch_index + 0x40000000u), from.bounces + 1);
         from.any = true;
         return true;
     }
@@ -149,39 +173,29 @@ private:
             const float c = 1.0f - std::min(1.0f, glm::dot(wo, s.ns)), c2 = c * c;
             weight += (1.0f - weight) * (c2 * c2 * c);
         }
-        if (!follow(from, s, s.ng, direction, weight, 0, from.work.counts.reflection)) return;
+        if (!follow(from, spawn_origin(s, s.ng), direction, weight, 0, from.work.counts.reflection)) return;
         if constexpr ((kParts & kernel_part::glass) != 0) from.work.media[from.to] = from.work.media[from.lane];
     }
 
-    void follow_glass(From& from, const SurfacePoint& s, const Material& m, glm::vec3 wo) {
+    void follow_glass(From& from, std::size_t k, const Material& m) {
         Workspace& work = from.work;
+        const Glass& g = work.glass;
         const MediumStack here = work.media[from.lane];
-        MediumStack beyond = here;
-        float ior_from = ior_of(here.top());
-        if (s.outside) {
-            beyond.enter(s.material);
-        } else {
-            // A surface left from a medium that was never entered: that of the surface itself.
-            if (!here.contains(s.material)) ior_from = m.ior;
-            beyond.leave(s.material);
-        }
-        const double eta = static_cast<double>(ior_from) / static_cast<double>(ior_of(beyond.top()));
-        const double cos_i = std::min(1.0, static_cast<double>(glm::dot(wo, s.ns)));
-        const double reflected = plan_.fresnel == Fresnel::exact ? fresnel_dielectric(cos_i, eta) : fresnel_schlick(cos_i, eta);
-        if (plan_.refractions && transmitted_cos2(cos_i, eta) > 0.0) {
+        const double reflected = g.reflected[k];
+        if (plan_.refractions && g.transmits[k] != 0) {
             const glm::vec3 weight = m.transmittance * static_cast<float>(1.0 - reflected);
-            if (follow(from, s, -s.ng, refract(wo, s.ns, eta), weight, 1, work.counts.refraction)) work.media[from.to] = beyond;
+            if (follow(from, at(g.beyond, k), at(g.refracted, k), weight, 1, work.counts.refraction)) {
+                work.media[from.to] = work.media_beyond[k];
+            }
         }
         if (plan_.reflections && reflected > 0.0) {
             const glm::vec3 weight(static_cast<float>(reflected));
-            if (follow(from, s, s.ng, above(reflect(wo, s.ns), s), weight, 0, work.counts.reflection)) work.media[from.to] = here;
+            if (follow(from, at(g.here, k), at(g.mirrored, k), weight, 0, work.counts.reflection)) work.media[from.to] = here;
         }
     }
 
-    // An interpolated normal can mirror a ray into the surface; it is then mirrored back across the tangent plane.
-    [[nodiscard]] static glm::vec3 above(glm::vec3 direction, const SurfacePoint& s) {
-        const float below = glm::dot(direction, s.ng);
-        return below < 0.0f ? direction - 2.0f * below * s.ng : direction;
+    [[nodiscard]] static glm::vec3 at(const float (&rows)[3][kRayBatch], std::size_t k) {
+        return {rows[0][k], rows[1][k], rows[2][k]};
     }
 
     [[nodiscard]] float ior_of(std::uint32_t medium) const {

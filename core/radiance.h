@@ -180,6 +180,7 @@ private:
         Lanes& lanes = work_.lanes;
         std::size_t kept = 0, k = 0;
         if constexpr ((kParts & kernel_part::glass) != 0) work_.stacks.make_room(work_.vertices.count);
+        branching_.divide_at_glass(work_);
         for (std::size_t lane = 0; lane < lanes.count; ++lane) {
             const bool met = Branching<kParts>::kAny && k < work_.vertices.count && work_.met[k] == lane;
             if (met ? branching_.follow(work_, k++, lane, kept) : branching_.resume(work_, lane, kept)) {

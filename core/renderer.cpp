@@ -20,7 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Samples a pixel gets per visit: 1, 1, 2, 4, then this many.
+// Samples a pixel gets per visit: 1, 1, 2, 4 and so on, at most this many.
 constexpr int kMaxBatch = 32;
 
 // A frame with everything derived from it once, before any worker sees it.

@@ -34,6 +34,14 @@ void find_surface_point(const Scene& scene, glm::vec3 origin, glm::vec3 directio
     return glm::vec3(glm::dvec3(s.p) + static_cast<double>(s.error) * glm::dvec3(n));
 }
 
+// A direction that leaves the surface: an interpolated normal can mirror a ray into it, which is then mirrored back across the
+// tangent plane.
+[[nodiscard, gnu::always_inline]] inline glm::vec3 above(glm::vec3 direction, const SurfacePoint& s) noexcept {
+    const float below = glm::dot(direction, s.ng);
+    const glm::vec3 back = direction - 2.0f * below * s.ng;
+    return {below < 0.0f ? back.x : direction.x, below < 0.0f ? back.y : direction.y, below < 0.0f ? back.z : direction.z};
+}
+
 // The direction from `start` to where rays leave the surface on the side of `ng`, so that a ray with t_max = 1 reaches all
 // that lies before the surface and never the surface itself.
 [[nodiscard]] inline glm::vec3 direction_to(const SurfacePoint& s, glm::vec3 start) noexcept {

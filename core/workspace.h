@@ -8,6 +8,7 @@
 #include "accel/ray_batch.h"
 #include "core/branch_stacks.h"
 #include "core/direct_light.h"
+#include "core/glass.h"
 #include "core/medium_stack.h"
 #include "core/ray_counts.h"
 #include "core/sampler.h"
@@ -54,8 +55,10 @@ struct Workspace {
     std::uint64_t prepared_for = ~std::uint64_t{0};  // the generation whose lights they are of
     BranchStacks stacks;
     Lanes lanes;
-    std::array<MediumStack, kRayBatch> media;  // what the ray of each lane travels in, where there is glass
-    RayBatch rays, shadow_rays;                // rays: of the lanes
+    std::array<MediumStack, kRayBatch> media;         // what the ray of each lane travels in, where there is glass
+    std::array<MediumStack, kRayBatch> media_beyond;  // what is behind each vertex of glass
+    Glass glass;
+    RayBatch rays, shadow_rays;  // rays: of the lanes
     HitBatch hits;
     OccludedBatch blocked;
     // Where rays have met surfaces, and of which lanes.
