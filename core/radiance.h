@@ -126,9 +126,7 @@ private:
     void add_light(std::uint32_t i, int wave) {
         const Light& light = plan_.lights[i];
         DirectLight& direct = work_.direct_light;
-        if constexpr ((kParts & kernel_part::soft) != 0) {
-            if (light.has_area()) choose_points(i, wave);
-        }
+        if (light.has_area()) choose_points(i, wave);
         direct.reflect(light, work_.vertices);
         if (!plan_.shadows) return direct.add(work_.vertices);
         const bool at_light = work_.shadow_origins.at_light(i);
@@ -141,11 +139,15 @@ private:
         direct.add(work_.blocked, work_.vertices);
     }
 
-    // Where on light i each vertex looks.
+    // Where on light i each vertex looks: at its middle without soft shadows.
     void choose_points(std::uint32_t i, int wave) {
         const Lanes& lanes = work_.lanes;
         const std::size_t n = work_.vertices.count;
         auto& u = work_.direct_light.u;
+        if constexpr ((kParts & kernel_part::soft) == 0) {
+            for (auto& row : u) std::fill_n(row, n, 0.5f);
+            return;
+        }
         if (wave == 0 && all_met()) {
             return Sampler::squares(plan_.sampler, lanes.pixel, lanes.index, hash(kCameraPath, i), n, u[0], u[1]);
         }
