@@ -9,12 +9,10 @@
 
 #include <glm/glm.hpp>
 
+#include "core/dimension.h"
 #include "core/medium_stack.h"
 
 namespace glint {
-
-// The path of camera rays.
-constexpr std::uint32_t kCameraPath = 1;
 
 // A ray still to be followed; it ends nowhere.
 struct Branch {

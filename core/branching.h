@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/dimension.h"
 #include "core/fresnel.h"
 #include "core/render_plan.h"
 #include "core/sampler.h"
@@ -15,12 +16,6 @@
 #include "core/workspace.h"
 
 namespace glint {
-
-// Random dimensions of a camera ray; those of a path node are hash(path, purpose) with the purposes below.
-namespace dimension {
-constexpr std::uint32_t pixel = 0, lens = 1;
-constexpr std::uint32_t fuzz_direction = 0x80000000u, fuzz_radius = 0x80000001u;  // lights take their index
-}  // namespace dimension
 
 // Adds `offset` (in the unit ball) times `radius` to the unit direction `r`. What would go below the surface is mirrored
 // back across the tangent plane, so that no energy is lost; a zero sum gives r.

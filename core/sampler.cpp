@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "accel/isa.h"
+#include "core/dimension.h"
+#include "core/sobol_columns.h"
 
 namespace glint {
 namespace {
@@ -45,14 +47,36 @@ struct SobolSeeds {
 
     explicit SobolSeeds(std::uint32_t seed)
         : order(seed), scramble_x(hash(seed ^ 0x68bc21ebu)), scramble_y(hash(seed ^ 0x02e5be93u)) {}
+    // `joint`: the order of the pixel's own dimension, so that what is drawn together stays together.
+    SobolSeeds(std::uint32_t pixel, std::uint32_t dimension, bool joined) : SobolSeeds(hash(pixel, dimension)) {
+        if (joined) order = hash(pixel, dimension::pixel);
+    }
     [[nodiscard]] std::uint32_t shuffled(std::uint32_t index) const {
         return reverse_bits(owen_scramble_reversed(reverse_bits(index), order));
+    }
+    // The pair of dimensions whose generator matrices are given.
+    [[nodiscard]] glm::vec2 pair(std::uint32_t i, const SobolColumns& columns) const {
+        std::uint32_t a = 0, b = 0;
+        for (std::uint32_t bit = 0; bit < 32; ++bit) {
+            const std::uint32_t mask = 0u - (i >> bit & 1u);
+            a ^= mask & columns.first[bit];
+            b ^= mask & columns.second[bit];
+        }
+        return {unit_float(reverse_bits(owen_scramble_reversed(a, scramble_x))),
+                unit_float(reverse_bits(owen_scramble_reversed(b, scramble_y)))};
     }
     [[nodiscard]] float x(std::uint32_t i) const { return unit_float(reverse_bits(owen_scramble_reversed(i, scramble_x))); }
     [[nodiscard]] float y(std::uint32_t i) const {
         return unit_float(reverse_bits(owen_scramble_reversed(sobol_second_reversed(i), scramble_y)));
     }
 };
+
+// The matrices of a dimension that `joint` draws together with the pixel's; null for all others, which are as in `sobol`.
+const SobolColumns* joint_columns(std::uint32_t dimension) {
+    constexpr std::uint32_t kFirstLight = hash(kCameraPath, 0);
+    if (dimension == kFirstLight) return &kSobolLight;
+    return dimension == dimension::lens ? &kSobolLens : nullptr;
+}
 
 // The dimension of each sample.
 struct ByLane {
@@ -82,6 +106,23 @@ template <class Dimension>
 [[gnu::target("avx2")]] void sobol_squares_avx2(const std::uint32_t* pixel, const std::uint32_t* index, Dimension dimension,
                                                 std::size_t n, float* x, float* y) {
     sobol_squares(pixel, index, dimension, n, x, y);
+}
+
+[[gnu::always_inline]] inline void joint_squares(const std::uint32_t* pixel, const std::uint32_t* index, std::uint32_t dimension,
+                                                 const SobolColumns& columns, std::size_t n, float* x, float* y) {
+    for (std::size_t first = 0; first < n; first += Sampler::kRun) {
+#pragma GCC ivdep
+        for (std::size_t k = first; k < first + Sampler::kRun; ++k) {
+            const SobolSeeds seeds(pixel[k], dimension, true);
+            const glm::vec2 p = seeds.pair(seeds.shuffled(index[k]), columns);
+            x[k] = p.x;
+            y[k] = p.y;
+        }
+    }
+}
+[[gnu::target("avx2")]] void joint_squares_avx2(const std::uint32_t* pixel, const std::uint32_t* index, std::uint32_t dimension,
+                                                const SobolColumns& columns, std::size_t n, float* x, float* y) {
+    joint_squares(pixel, index, dimension, columns, n, x, y);
 }
 
 template <class Dimension>
@@ -153,12 +194,24 @@ void Sampler::squares(SamplerKind kind, const std::uint32_t* pixel, const std::u
 
 void Sampler::squares(SamplerKind kind, const std::uint32_t* pixel, const std::uint32_t* index, std::uint32_t dimension,
                       std::size_t n, float* x, float* y) noexcept {
+    if (kind == SamplerKind::joint) {
+        const SobolColumns* columns = joint_columns(dimension);
+        if (columns == nullptr) return squares_of(SamplerKind::sobol, pixel, index, OfAll{dimension}, n, x, y);
+        return isa_in_use() == Isa::baseline ? joint_squares(pixel, index, dimension, *columns, n, x, y)
+                                             : joint_squares_avx2(pixel, index, dimension, *columns, n, x, y);
+    }
     squares_of(kind, pixel, index, OfAll{dimension}, n, x, y);
 }
 
 glm::vec2 Sampler::square(std::uint32_t dimension) const noexcept {
     const std::uint32_t seed = hash(pixel_, dimension);
     switch (kind_) {
+        case SamplerKind::joint:
+            if (const SobolColumns* columns = joint_columns(dimension)) {
+                const SobolSeeds seeds(pixel_, dimension, true);
+                return seeds.pair(seeds.shuffled(index_), *columns);
+            }
+            [[fallthrough]];
         case SamplerKind::sobol: {
             const SobolSeeds seeds(seed);
             const std::uint32_t i = seeds.shuffled(index_);
@@ -185,6 +238,7 @@ glm::vec2 Sampler::square(std::uint32_t dimension) const noexcept {
 float Sampler::interval(std::uint32_t dimension) const noexcept {
     const std::uint32_t seed = hash(pixel_, dimension);
     switch (kind_) {
+        case SamplerKind::joint:
         case SamplerKind::sobol: {
             const SobolSeeds seeds(seed);
             return seeds.x(seeds.shuffled(index_));

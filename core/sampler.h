@@ -1,5 +1,6 @@
 // Random numbers as a function, not a stream: sample `index` of a pixel is a pure function of (pixel, index, dimension, seed).
-// Knows neither what a dimension is used for nor how many samples there will be.
+// Knows how many samples there will be as little as what a dimension is used for, except that `joint` draws the pixel, the lens
+// and the first light of camera rays from one sequence of six dimensions.
 // Invariant: values lie in [0, 1); any two dimensions of a pixel are independently scrambled.
 #pragma once
 

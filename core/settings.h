@@ -31,8 +31,8 @@ struct FeatureSet {
 };
 
 enum class Fresnel { exact, schlick };
-enum class SamplerKind { sobol, jittered, random, regular };
-constexpr std::array<std::string_view, 4> kSamplerNames{"sobol", "jittered", "random", "regular"};
+enum class SamplerKind { sobol, jittered, random, regular, joint };
+constexpr std::array<std::string_view, 5> kSamplerNames{"sobol", "jittered", "random", "regular", "joint"};
 enum class Background { scene, color, environment };
 
 // What decides the samples: two equal RenderSettings on one scene and camera give the same bytes.

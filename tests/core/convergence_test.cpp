@@ -1,6 +1,7 @@
 // How fast sample means converge: errors of the samplers over many seeds against closed forms and measured tables.
 #include <gtest/gtest.h>
 
+#include "core/dimension.h"
 #include "tests/core/test_scene.h"
 
 namespace glint {
@@ -86,6 +87,31 @@ TEST(Convergence, S_SMP_06_SobolErrsAsOwenScramblingDoes) {
         const std::vector<double> e = errors(SamplerKind::sobol, row.f, 2048);
         expect_within_a_tenth(e, row.table, row.f.name);
         EXPECT_LE(slope(e), row.slope) << row.f.name;
+    }
+}
+
+// Pixel and light together: four dimensions, of which padded pairs cover only the projections.
+TEST(Convergence, S_SMP_10_JointCoversPixelAndLightTogether) {
+    const auto error = [](SamplerKind kind, std::uint32_t n, bool edge) {
+        double squares = 0.0;
+        for (std::uint32_t pixel = 0; pixel < 512; ++pixel) {
+            double sum = 0.0;
+            for (std::uint32_t k = 0; k < n; ++k) {
+                const Sampler sampler(kind, pixel, 77, k, 1234);
+                const glm::dvec2 a = sampler.square(dimension::pixel), b = sampler.square(hash(kCameraPath, 0));
+                sum += (edge ? kEdge : kBell).value(a) * kBell.value(b);
+            }
+            const double e = sum / n - (edge ? kEdge : kBell).exact * kBell.exact;
+            squares += e * e / 512;
+        }
+        return std::sqrt(squares);
+    };
+    for (const bool edge : {false, true}) {
+        for (const std::uint32_t n : {16u, 64u, 100u, 256u}) {
+            const double joint = error(SamplerKind::joint, n, edge), padded = error(SamplerKind::sobol, n, edge);
+            note(fmt::format("joint_{}_{}", edge ? "edge" : "bell", n), joint);
+            EXPECT_LE(joint, (n < 64 ? 0.85 : edge ? 0.7 : 0.35) * padded) << n;
+        }
     }
 }
 

@@ -1,6 +1,8 @@
 // Sample points: their range, their strata, and that pixels and dimensions do not know of each other.
 #include "core/sampler.h"
 
+#include "core/dimension.h"
+
 #include <set>
 
 #include <gtest/gtest.h>
@@ -12,7 +14,8 @@ namespace {
 
 using namespace test;
 
-constexpr SamplerKind kKinds[] = {SamplerKind::sobol, SamplerKind::jittered, SamplerKind::random, SamplerKind::regular};
+constexpr SamplerKind kKinds[] = {SamplerKind::sobol, SamplerKind::jittered, SamplerKind::random, SamplerKind::regular,
+                                  SamplerKind::joint};
 // What the integrator draws: pixel, lens, two lights at the first hit, fuzz, a light and fuzz one bounce later.
 const std::uint32_t kDimensions[] = {dimension::pixel,
                                      dimension::lens,
@@ -77,6 +80,15 @@ TEST(Sampler, S_SMP_03_SobolHasOnePointInEveryElementaryInterval) {
                 points.push_back(Sampler(SamplerKind::sobol, pixel, 5, i, 9).square(dimension));
             for (int a = 0; a <= 6; ++a) EXPECT_TRUE(one_in_each_box(points, a, 6 - a)) << dimension;
         }
+    }
+}
+
+TEST(Sampler, S_SMP_03_JointStratifiesEveryCoordinate) {
+    for (const std::uint32_t dimension : {dimension::pixel, dimension::lens, hash(kCameraPath, 0)}) {
+        std::vector<glm::vec2> points;
+        for (std::uint32_t i = 0; i < 256; ++i) points.push_back(Sampler(SamplerKind::joint, 3, 5, i, 9).square(dimension));
+        EXPECT_TRUE(one_in_each_box(points, 8, 0)) << dimension;
+        EXPECT_TRUE(one_in_each_box(points, 0, 8)) << dimension;
     }
 }
 
@@ -147,14 +159,14 @@ void expect_uncorrelated(SamplerKind kind, std::uint32_t n) {
 }
 
 TEST(Sampler, S_SMP_04_DimensionsAreUncorrelated) {
-    for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::jittered, SamplerKind::random}) {
+    for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::joint, SamplerKind::jittered, SamplerKind::random}) {
         for (const std::uint32_t n : {4u, 16u, 64u}) expect_uncorrelated(kind, n);
     }
 }
 
 TEST(Sampler, S_SMP_05_NeighbouringPixelsDoNotShareAPattern) {
     constexpr int kSide = 256;
-    for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::jittered, SamplerKind::random}) {
+    for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::joint, SamplerKind::jittered, SamplerKind::random}) {
         for (const std::uint32_t d : {dimension::pixel, hash(1, 0)}) {
             std::vector<double> first(kSide * kSide);
             for (int i = 0; i < kSide * kSide; ++i) {
@@ -180,7 +192,7 @@ TEST(Sampler, S_SMP_05_NeighbouringPixelsDoNotShareAPattern) {
 }
 
 TEST(Sampler, S_SMP_09_NothingRepeatsFarOut) {
-    for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::jittered, SamplerKind::random}) {
+    for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::joint, SamplerKind::jittered, SamplerKind::random}) {
         // Windows far apart in the index and in the picture; a table or a 16-bit counter would repeat.
         std::set<std::pair<float, float>> seen;
         std::size_t drawn = 0;
