@@ -217,7 +217,13 @@ int run_info(const Options& o) {
     }
     const Aabb box = g.bounds();
     if (!box.empty()) {
-        fmt::print("bounds {:g} {:g} {:g} to {:g} {:g} {:g}\n", box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z);
+        const glm::dvec3 origin = scene->origin, lo = glm::dvec3(box.lo) + origin, hi = glm::dvec3(box.hi) + origin;
+        // Far out the usual six digits would show no shape.
+        const bool far = origin != glm::dvec3(0.0);
+        const int digits = far ? 12 : 6;
+        fmt::print("bounds {:.{}g} {:.{}g} {:.{}g} to {:.{}g} {:.{}g} {:.{}g}\n", lo.x, digits, lo.y, digits, lo.z, digits, hi.x,
+                   digits, hi.y, digits, hi.z, digits);
+        if (far) fmt::print("stored relative to {:.12g} {:.12g} {:.12g}\n", origin.x, origin.y, origin.z);
     }
     fmt::print("resolution {}x{}\nspp {}\n", scene->width, scene->height,
                scene->spp > 0 ? std::to_string(scene->spp) : "not given");

@@ -20,8 +20,8 @@ CameraPose chosen_camera(const Options& o, const Scene& scene) {
                                      scene.cameras.size(), scene.cameras.size() == 1 ? "" : "s"));
     }
     CameraPose c = scene.cameras[index];
-    if (o.camera_position) c.eye = *o.camera_position;
-    if (o.camera_focal_point) c.target = *o.camera_focal_point;
+    if (o.camera_position) c.eye = scene.local(*o.camera_position);
+    if (o.camera_focal_point) c.target = scene.local(*o.camera_focal_point);
     if (o.camera_view_up) c.up = *o.camera_view_up;
     if (o.view_angle) c.view_angle = *o.view_angle;
     if (c.eye == c.target) throw UsageError("the camera's position and focal point are the same");

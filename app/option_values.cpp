@@ -18,11 +18,11 @@ std::vector<std::string_view> split(std::string_view text, std::string_view sepa
     }
 }
 
-glm::vec3 vector3(std::string_view option, std::string_view text) {
+glm::dvec3 vector3(std::string_view option, std::string_view text) {
     const auto parts = split(text, ",");
     if (parts.size() != 3) refuse_value(option, text, "three numbers X,Y,Z");
-    glm::vec3 v;
-    for (int i = 0; i < 3; ++i) v[i] = number(option, parts[static_cast<std::size_t>(i)], -1e18f, 1e18f, "three numbers X,Y,Z");
+    glm::dvec3 v;
+    for (int i = 0; i < 3; ++i) v[i] = number(option, parts[static_cast<std::size_t>(i)], -1e18, 1e18, "three numbers X,Y,Z");
     return v;
 }
 

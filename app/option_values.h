@@ -36,7 +36,7 @@ template <class T>
 // The parts between any of the separators, empty ones included.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, std::string_view separators);
 // X,Y,Z, each at most 1e18.
-[[nodiscard]] glm::vec3 vector3(std::string_view option, std::string_view text);
+[[nodiscard]] glm::dvec3 vector3(std::string_view option, std::string_view text);
 
 // The word of `known` closest to `typed`, as "; did you mean 'x'?", or nothing when none is near.
 [[nodiscard]] std::string did_you_mean(std::string_view typed, const std::vector<std::string>& known);

@@ -36,7 +36,8 @@ struct Options {
     std::optional<int> depth;
     RenderSettings settings;  // what is independent of the scene
     std::optional<float> aperture, focus, view_angle;
-    std::optional<glm::vec3> camera_position, camera_focal_point, camera_view_up;
+    std::optional<glm::dvec3> camera_position, camera_focal_point;  // in the world
+    std::optional<glm::vec3> camera_view_up;
     int camera_index = 0;
     std::string environment;
     float exposure = 0.0f;

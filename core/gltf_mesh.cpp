@@ -219,6 +219,7 @@ void GltfMeshReader::add_triangles(const Part& part) {
             for (std::size_t k = 0; k < 3; ++k) stored[k] = vertex(v[k], p[k]);
             builder_.add_triangle(stored[0], stored[1], stored[2], part.material);
         } else if (valid_vertex(p[0]) && valid_vertex(p[1]) && valid_vertex(p[2])) {
+            for (const glm::vec3 corner : p) builder_.mark(corner);
             ++zero_area_;
         } else {
             ++not_finite_;

@@ -29,7 +29,7 @@ void read_point(Reader& r, const Token& word) {
         r.messages.fail(r.in.line(), fmt::format("{} needs 3 or 6 numbers, found {}", in_quotes(word.text), v.size()));
     }
     Light light;
-    light.position = to_vec3(v[0], v[1], v[2]);
+    light.position = r.point(v[0], v[1], v[2]);
     light.emission = v.size() == 6 ? light_color(r, word, {v[3], v[4], v[5]}) : glm::vec3(1.0f);
     add_light(r, word, light);
 }
@@ -38,7 +38,7 @@ void read_point(Reader& r, const Token& word) {
 void add_quad(Reader& r, const Token& word, glm::dvec3 corner, glm::dvec3 edge1, glm::dvec3 edge2, glm::vec3 emission) {
     Light light;
     light.emission = emission;
-    light.position = glm::vec3(corner);
+    light.position = r.builder.scene().local(corner);
     if (edge1 == glm::dvec3(0.0) && edge2 == glm::dvec3(0.0)) {
         r.messages.warn(word.line, fmt::format("{} has no extent, taken as a point", in_quotes(word.text)));
     } else {

@@ -65,7 +65,7 @@ void read_polygon(Reader& r, const Token& word) {
     outline.reserve(corners);
     for (std::size_t i = 0; i < corners; ++i) {
         const auto [x, y, z] = r.in.numbers<3>("a vertex of 'p'");
-        outline.push_back(r.builder.add_vertex(to_vec3(x, y, z)));
+        outline.push_back(r.builder.add_vertex(r.point(x, y, z)));
     }
     Flaws flaws;
     add_face(r, outline, flaws);
@@ -91,7 +91,7 @@ void read_patch(Reader& r, const Token& word) {
     outline.reserve(corners);
     for (std::size_t i = 0; i < v.size(); i += stride) {
         const glm::vec3 normal = stride == 6 ? shading_normal({v[i + 3], v[i + 4], v[i + 5]}) : glm::vec3(0.0f);
-        outline.push_back(r.builder.add_vertex(to_vec3(v[i], v[i + 1], v[i + 2]), normal));
+        outline.push_back(r.builder.add_vertex(r.point(v[i], v[i + 1], v[i + 2]), normal));
     }
     Flaws flaws;
     add_face(r, outline, flaws);
@@ -114,7 +114,7 @@ void read_mesh(Reader& r, const Token& word) {
     const auto first = static_cast<Index>(r.builder.geometry().vertices.size());
     for (Index i = 0; i < vertices; ++i) {
         const auto [x, y, z] = r.in.numbers<3>("a vertex of 'mesh'");
-        r.builder.add_vertex(to_vec3(x, y, z));
+        r.builder.add_vertex(r.point(x, y, z));
     }
     Flaws flaws;
     for (Index i = 0; i < faces; ++i) {
@@ -133,7 +133,7 @@ void read_included_mesh(Reader& r, const Token& word) {
     if (!path) r.messages.fail(word.line, fmt::format("ply {}: no such file below the scene's folder", in_quotes(name)));
     const std::string text = reader::read_file(*path, kMostBytes - r.ply_bytes);
     r.ply_bytes += text.size();
-    const PlyMesh mesh = read_ply(text, path->string());
+    const PlyMesh mesh = read_ply(text, path->string(), r.builder.scene().origin);
     const auto first = static_cast<Index>(r.builder.geometry().vertices.size());
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         r.builder.add_vertex(mesh.positions[i], mesh.normals.empty() ? glm::vec3(0.0f) : shading_normal(mesh.normals[i]));

@@ -33,6 +33,8 @@ struct Reader {
         if (!material_index) material_index = builder.add_material(material);
         return *material_index;
     }
+    // A position of the file, parsed and tested as double, as the scene stores it.
+    [[nodiscard]] glm::vec3 point(double x, double y, double z) const { return builder.scene().local({x, y, z}); }
 };
 
 struct Statement {
@@ -44,8 +46,5 @@ struct Statement {
 [[nodiscard]] std::span<const Statement> mesh_statements();
 [[nodiscard]] std::span<const Statement> light_statements();
 [[nodiscard]] std::span<const Statement> surface_statements();
-
-// Arguments are parsed and tested as double and become float here, once.
-[[nodiscard]] inline glm::vec3 to_vec3(double x, double y, double z) { return glm::vec3(glm::dvec3(x, y, z)); }
 
 }  // namespace glint::p3f

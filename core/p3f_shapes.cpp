@@ -20,20 +20,23 @@ void add_sphere(Reader& r, const Token& word, glm::vec3 center, double radius) {
 
 void read_sphere(Reader& r, const Token& word) {
     const auto [x, y, z, radius] = r.in.numbers<4>("'s'");
-    add_sphere(r, word, to_vec3(x, y, z), radius);
+    add_sphere(r, word, r.point(x, y, z), radius);
 }
 
 // Corners in any order: the 2019 files write `aabb` so, and a swapped pair can mean nothing else.
 void read_box(Reader& r, const Token& word) {
     const auto v = r.in.numbers<6>(in_quotes(word.text));
-    const glm::vec3 a = to_vec3(v[0], v[1], v[2]);
-    const glm::vec3 b = to_vec3(v[3], v[4], v[5]);
+    const glm::vec3 a = r.point(v[0], v[1], v[2]);
+    const glm::vec3 b = r.point(v[3], v[4], v[5]);
     if (!r.builder.add(Box{glm::min(a, b), glm::max(a, b)}, r.current_material())) warn_dropped(r, word, "lies too far out");
 }
 
 void read_plane_through(Reader& r, const Token& word) {
     const auto v = r.in.numbers<9>("'pl'");
-    const Plane plane = plane_through({v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]});
+    // Taken from doubles as they stand: a plane's place is a double.
+    const glm::dvec3 o = r.builder.scene().origin;
+    const Plane plane =
+        plane_through(glm::dvec3(v[0], v[1], v[2]) - o, glm::dvec3(v[3], v[4], v[5]) - o, glm::dvec3(v[6], v[7], v[8]) - o);
     if (!r.builder.add(plane, r.current_material())) warn_dropped(r, word, "has its three points on a line");
 }
 
@@ -43,14 +46,16 @@ void read_plane(Reader& r, const Token& word) {
     const glm::dvec3 normal(x, y, z);
     const double length = glm::length(normal);
     // N.x + d = 0 holds for any length of N; dividing both keeps the place.
-    const Plane plane = length > 0.0 ? Plane{normal / length, d / length} : Plane{normal, d};
+    // Where coordinates begin at o, N.(x + o) + d = 0.
+    const double here = glm::dot(normal, r.builder.scene().origin) + d;
+    const Plane plane = length > 0.0 ? Plane{normal / length, here / length} : Plane{normal, d};
     if (!r.builder.add(plane, r.current_material())) warn_dropped(r, word, "has no normal");
 }
 
 // NFF wants the smaller radius at the apex and lets both be negative for a view from inside; neither matters here.
 void read_cone(Reader& r, const Token& word) {
     const auto v = r.in.numbers<8>("'c'");
-    const Cone cone{to_vec3(v[0], v[1], v[2]), static_cast<float>(std::abs(v[3])), to_vec3(v[4], v[5], v[6]),
+    const Cone cone{r.point(v[0], v[1], v[2]), static_cast<float>(std::abs(v[3])), r.point(v[4], v[5], v[6]),
                     static_cast<float>(std::abs(v[7]))};
     if (!r.builder.add(cone, r.current_material())) warn_dropped(r, word, "has no length or no radius");
 }
@@ -64,7 +69,7 @@ void read_moving_sphere(Reader& r, const Token& word) {
     }
     const bool radius_last = v.size() == 9 && (v[8] < v[7] || v[6] == 0.0);
     r.messages.warn(word.line, fmt::format("{} does not move, its first position is used", what));
-    add_sphere(r, word, to_vec3(v[0], v[1], v[2]), radius_last ? v[8] : v[6]);
+    add_sphere(r, word, r.point(v[0], v[1], v[2]), radius_last ? v[8] : v[6]);
 }
 
 void skip_animation(Reader& r, const Token& word) {

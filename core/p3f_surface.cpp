@@ -76,7 +76,7 @@ void read_material(Reader& r, const Token& word) {
 void read_background(Reader& r, const Token& word) {
     const auto [red, green, blue] = r.in.numbers<3>(in_quotes(word.text));
     if (std::min({red, green, blue}) < 0.0) r.messages.warn(word.line, "a negative background colour is taken as 0");
-    r.builder.scene().environment.color = glm::max(to_vec3(red, green, blue), glm::vec3(0.0f));
+    r.builder.scene().environment.color = glm::max(glm::vec3(glm::dvec3(red, green, blue)), glm::vec3(0.0f));
 }
 
 void read_environment(Reader& r, const Token& word) {

@@ -116,8 +116,8 @@ void finish_view(const View& view, bool aperture_is_diameter, SceneBuilder& buil
     if (!view.resolution) messages.warn(view.line, fmt::format("the view has no 'resolution', {0} {0} is used", resolution.x));
 
     CameraPose pose;
-    pose.eye = glm::vec3(*view.eye);
-    pose.target = glm::vec3(*view.target);
+    pose.eye = scene.local(*view.eye);
+    pose.target = scene.local(*view.target);
     pose.up = glm::vec3(view.up.value_or(glm::dvec3(0.0, 1.0, 0.0)));
     pose.view_angle = static_cast<float>(view.angle.value_or(kDefaultAngle));
     check_axes(view, pose, messages);

@@ -20,8 +20,8 @@ using p3f::in_quotes;
 template <class Values>
 class BodyReader {
 public:
-    BodyReader(Values values, const ply::Header& header, const std::string& name)
-        : values_(values), header_(header), messages_(name) {}
+    BodyReader(Values values, const ply::Header& header, const std::string& name, glm::dvec3 origin)
+        : values_(values), header_(header), messages_(name), origin_(origin) {}
 
     PlyMesh read() {
         for (const ply::Element& element : header_.elements) {
@@ -66,7 +66,7 @@ private:
         // The count was checked: at least one record's bytes stand behind each of these.
         mesh_.positions.reserve(element.announced);
         if (normals) mesh_.normals.reserve(element.announced);
-        std::array<float, 6> v{};
+        std::array<double, 6> v{};
         for (std::uint64_t i = 0; i < element.announced; ++i) {
             for (std::size_t k = 0; k < slots.size(); ++k) {
                 if (slots[k] < v.size()) {
@@ -75,10 +75,11 @@ private:
                     skip(element.properties[k]);
                 }
             }
-            if (!(std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]))) {
+            const glm::vec3 p(glm::dvec3(v[0], v[1], v[2]) - origin_);
+            if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))) {
                 values_.fail(fmt::format("vertex {} is not finite", i));
             }
-            mesh_.positions.emplace_back(v[0], v[1], v[2]);
+            mesh_.positions.push_back(p);
             if (normals) mesh_.normals.emplace_back(v[3], v[4], v[5]);
         }
     }
@@ -132,24 +133,25 @@ private:
     Values values_;
     const ply::Header& header_;
     p3f::Messages messages_;
+    glm::dvec3 origin_;
     PlyMesh mesh_;
 };
 
 template <class Values>
-PlyMesh read_body(std::string_view file, const ply::Header& header, const std::string& name) {
-    return BodyReader<Values>(Values(file, header, name), header, name).read();
+PlyMesh read_body(std::string_view file, const ply::Header& header, const std::string& name, glm::dvec3 origin) {
+    return BodyReader<Values>(Values(file, header, name), header, name, origin).read();
 }
 
 }  // namespace
 
-PlyMesh read_ply(std::string_view file, const std::string& name) {
+PlyMesh read_ply(std::string_view file, const std::string& name, glm::dvec3 origin) {
     const ply::Header header = ply::read_header(file, name);
-    if (header.format == ply::Format::ascii) return read_body<ply::TextValues>(file, header, name);
+    if (header.format == ply::Format::ascii) return read_body<ply::TextValues>(file, header, name, origin);
     const bool little = header.format == ply::Format::binary_little_endian;
     if (little == (std::endian::native == std::endian::little)) {
-        return read_body<ply::BinaryValues<false>>(file, header, name);
+        return read_body<ply::BinaryValues<false>>(file, header, name, origin);
     }
-    return read_body<ply::BinaryValues<true>>(file, header, name);
+    return read_body<ply::BinaryValues<true>>(file, header, name, origin);
 }
 
 }  // namespace glint

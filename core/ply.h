@@ -19,7 +19,8 @@ struct PlyMesh {
     std::vector<std::uint32_t> corners;  // per face: how many, then 0-based vertex numbers
 };
 
+// Positions are relative to `origin`, which is taken from them before they are rounded to float.
 // Throws SceneError `name:line: reason`, for binary data `name:byte offset: reason`.
-[[nodiscard]] PlyMesh read_ply(std::string_view file, const std::string& name);
+[[nodiscard]] PlyMesh read_ply(std::string_view file, const std::string& name, glm::dvec3 origin = glm::dvec3(0.0));
 
 }  // namespace glint

@@ -25,16 +25,16 @@ public:
     TextValues(std::string_view text, const Header& header, const std::string& name)
         : begin_(text.data() + header.body), at_(begin_), end_(text.data() + text.size()), line_(header.body_line), name_(name) {}
 
-    [[nodiscard]] float real(Type type) {
+    [[nodiscard]] double real(Type type) {
         start_word();
         const char* const from = at_ + (*at_ == '+' ? 1 : 0);
-        float value = 0.0f;
+        double value = 0.0;
         // Numbers that are floats in binary are read as floats here, and doubles as doubles: the three formats agree.
-        const auto [stop, error] = type == Type::float32 ? std::from_chars(from, end_, value) : wide_real(from, value);
+        const auto [stop, error] = type == Type::float32 ? narrow_real(from, value) : std::from_chars(from, end_, value);
         if (error == std::errc::invalid_argument || !ends_word(stop)) fail(fmt::format("{} is not a number", word()));
-        // Too large for a float, or too small: the general reader tells which.
+        // Too large, or too small: the general reader tells which.
         if (error == std::errc::result_out_of_range) {
-            value = static_cast<float>(p3f::to_number({from, static_cast<std::size_t>(stop - from)}).value_or(HUGE_VAL));
+            value = p3f::to_number({from, static_cast<std::size_t>(stop - from)}).value_or(HUGE_VAL);
         }
         at_ = stop;
         return value;
@@ -83,10 +83,10 @@ private:
         at_ = p;
     }
 
-    std::from_chars_result wide_real(const char* from, float& value) const {
-        double wide = 0.0;
-        const std::from_chars_result result = std::from_chars(from, end_, wide);
-        value = static_cast<float>(wide);
+    std::from_chars_result narrow_real(const char* from, double& value) const {
+        float narrow = 0.0f;
+        const std::from_chars_result result = std::from_chars(from, end_, narrow);
+        value = static_cast<double>(narrow);
         return result;
     }
 
@@ -107,10 +107,10 @@ public:
     BinaryValues(std::string_view bytes, const Header& header, const std::string& name)
         : bytes_(bytes), at_(header.body), name_(name) {}
 
-    [[nodiscard]] float real(Type type) {
-        if (type == Type::float32) return std::bit_cast<float>(take<std::uint32_t>());
-        if (type == Type::float64) return static_cast<float>(std::bit_cast<double>(take<std::uint64_t>()));
-        return static_cast<float>(integer(type));
+    [[nodiscard]] double real(Type type) {
+        if (type == Type::float32) return static_cast<double>(std::bit_cast<float>(take<std::uint32_t>()));
+        if (type == Type::float64) return std::bit_cast<double>(take<std::uint64_t>());
+        return static_cast<double>(integer(type));
     }
 
     [[nodiscard]] std::int64_t integer(Type type) {

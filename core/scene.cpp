@@ -2,6 +2,10 @@
 
 #include <utility>
 
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "core/scene_origin.h"
+
 namespace glint {
 namespace {
 
@@ -10,6 +14,16 @@ constexpr std::size_t slot(PrimitiveKind kind) { return static_cast<std::size_t>
 // A kind's ids end where the tag bits begin.
 void check_room(std::size_t count) {
     if (count >= kMaxPrimitivesPerKind) throw SceneError("more than 536870911 primitives of one kind");
+}
+
+// Planes and instances stay where they are: prototypes have none.
+void move(Geometry& geometry, glm::dvec3 by) {
+    if (by == glm::dvec3(0.0)) return;
+    const auto shift = [by](glm::vec3& p) { p = glm::vec3(glm::dvec3(p) + by); };
+    for (glm::vec3& v : geometry.vertices) shift(v);
+    for (Sphere& s : geometry.spheres) shift(s.center);
+    for (Box& b : geometry.boxes) shift(b.lo), shift(b.hi);
+    for (Cone& c : geometry.cones) shift(c.base), shift(c.apex);
 }
 
 }  // namespace
@@ -70,17 +84,28 @@ std::uint32_t SceneBuilder::add_vertex(glm::vec3 position, glm::vec3 normal) {
 
 bool SceneBuilder::add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material) {
     const auto& v = geometry_.vertices;
-    if (!valid_triangle(v[a], v[b], v[c])) return false;
+    if (!valid_triangle(v[a], v[b], v[c])) {
+        // Far from zero all corners of a fine mesh may round to one point.
+        for (const std::uint32_t corner : {a, b, c}) mark(v[corner]);
+        return false;
+    }
     check_room(geometry_.triangles.size());
     geometry_.triangles.push_back({a, b, c});
     surfaces_.material_of[slot(PrimitiveKind::triangle)].push_back(material);
     return true;
 }
 
+void SceneBuilder::mark(glm::vec3 point) {
+    if (valid_vertex(point)) marked_.grow(point);
+}
+
+Aabb SceneBuilder::extent() const { return extent_of(geometry_, marked_); }
+
 struct SceneBuilder::World {
     Geometry geometry;
     Surfaces surfaces;
     bool any_normal;
+    Aabb marked;
 };
 
 void SceneBuilder::close() {
@@ -90,23 +115,29 @@ void SceneBuilder::close() {
 }
 
 void SceneBuilder::begin_prototype() {
-    world_ = std::make_shared<World>(World{std::exchange(geometry_, {}), std::exchange(surfaces_, {}), any_normal_});
+    world_ = std::make_shared<World>(World{std::exchange(geometry_, {}), std::exchange(surfaces_, {}), any_normal_, marked_});
     any_normal_ = false;
+    marked_ = Aabb();
 }
 
 std::uint32_t SceneBuilder::end_prototype() {
     close();
+    // Positions of a prototype are floats as the file has them, so that taking a point near them away is exact.
+    prototype_origins_.push_back(origin_shift(extent()));
+    move(geometry_, -prototype_origins_.back());
     Geometry prototype = std::exchange(geometry_, std::move(world_->geometry));
     scene_.prototypes.push_back(std::exchange(surfaces_, std::move(world_->surfaces)));
     any_normal_ = world_->any_normal;
+    marked_ = world_->marked;
     world_.reset();
     geometry_.prototypes.emplace_back(std::make_shared<const Geometry>(std::move(prototype)));
     return static_cast<std::uint32_t>(geometry_.prototypes.size() - 1);
 }
 
 bool SceneBuilder::place(std::uint32_t prototype, const glm::dmat4& world_from_object) {
+    const glm::dmat4 world_from_stored = glm::translate(world_from_object, prototype_origins_[prototype]);
     try {
-        return geometry_.place(prototype, affine_map(world_from_object));
+        return geometry_.place(prototype, affine_map(world_from_stored));
     } catch (const std::length_error&) {
         throw SceneError("more than 1610612735 primitives in instances");
     }

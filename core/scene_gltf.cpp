@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "core/gltf_camera.h"
 #include "core/gltf_check.h"
@@ -16,6 +17,7 @@
 #include "core/gltf_mesh.h"
 #include "core/gltf_report.h"
 #include "core/scene_io.h"
+#include "core/scene_origin.h"
 #include "core/seen_vertices.h"
 
 namespace glint {
@@ -120,17 +122,18 @@ std::vector<int> root_nodes(const tinygltf::Model& model, GltfReport& report) {
     return roots;
 }
 
-// Calls visit(node, world_from_node) for each node in depth-first order. Each level keeps a cursor instead of a queue of
-// children, so memory is bounded by the depth; a node that is met twice means a cycle or two parents, and both are refused.
+// Calls visit(node, world_from_node) for each node in depth-first order, the world counted from `origin`. Each level keeps a
+// cursor instead of a queue of children, so memory is bounded by the depth; a node that is met twice means a cycle or two
+// parents, and both are refused.
 template <typename Visit>
-void walk(const tinygltf::Model& model, const std::vector<int>& roots, const GltfReport& report, Visit visit) {
+void walk(const tinygltf::Model& model, const std::vector<int>& roots, glm::dvec3 origin, const GltfReport& report, Visit visit) {
     struct Level {
         const std::vector<int>* nodes;
         std::size_t next;
         glm::dmat4 world_from_parent;
     };
     std::vector<char> seen(model.nodes.size(), 0);
-    std::vector<Level> stack{{&roots, 0, glm::dmat4(1.0)}};
+    std::vector<Level> stack{{&roots, 0, glm::translate(glm::dmat4(1.0), -origin)}};
     while (!stack.empty()) {
         Level& level = stack.back();
         if (level.next == level.nodes->size()) {
@@ -169,29 +172,19 @@ void add_cameras(const tinygltf::Model& model, std::vector<PlacedCamera> placed,
     report.warn("no camera: the whole scene is framed");
 }
 
-}  // namespace
-
-std::shared_ptr<const Scene> reader::read_gltf(const std::filesystem::path& path, const LoadOptions&) {
-    GltfReport report(path.string());
-    const tinygltf::Model model = parse(read_file(path, kMaxGltfBytes), path.parent_path(), report);
-    check_extensions(model, report);
-    warn_of_motion(model, report);
-
-    SceneBuilder builder;
+// Meshes and lights of all nodes; returns the cameras, which are added when the bounds are known.
+std::vector<PlacedCamera> read_nodes(const tinygltf::Model& model, SceneBuilder& builder, GltfReport& report) {
     Scene& scene = builder.scene();
-    scene.name = path.filename().string();
-    scene.transfer = Transfer::srgb;
-    scene.up = glm::vec3(0.0f, 1.0f, 0.0f);
     GltfMeshReader meshes(model, builder, report);
     std::vector<PlacedCamera> cameras;
     const std::vector<int> roots = root_nodes(model, report);
-    walk(model, roots, report, [&](int index, const glm::dmat4& world_from_node) {
+    walk(model, roots, scene.origin, report, [&](int index, const glm::dmat4& world_from_node) {
         const int mesh = model.nodes[static_cast<std::size_t>(index)].mesh;
         if (mesh < 0) return;
         for_each_placement(model, index, world_from_node, report, [&](const glm::dmat4& m) { meshes.announce(mesh, m); });
     });
     meshes.plan();
-    walk(model, roots, report, [&](int index, const glm::dmat4& world_from_node) {
+    walk(model, roots, scene.origin, report, [&](int index, const glm::dmat4& world_from_node) {
         const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];
         if (node.mesh >= 0)
             for_each_placement(model, index, world_from_node, report, [&](const glm::dmat4& m) { meshes.add(node.mesh, m); });
@@ -199,11 +192,32 @@ std::shared_ptr<const Scene> reader::read_gltf(const std::filesystem::path& path
         read_gltf_light(model, index, world_from_node, scene, report);
     });
     meshes.report_dropped();
-    if (builder.geometry().seen_count() == 0) report.warn("nothing to show: no triangle");
-    add_cameras(model, std::move(cameras), builder, report);
-    finish_gltf_light(scene, report);
-    scene.warnings = report.take_warnings();
-    return builder.finish();
+    return cameras;
+}
+
+}  // namespace
+
+std::shared_ptr<const Scene> reader::read_gltf(const std::filesystem::path& path, const LoadOptions&) {
+    GltfReport file_report(path.string());
+    const tinygltf::Model model = parse(read_file(path, kMaxGltfBytes), path.parent_path(), file_report);
+    check_extensions(model, file_report);
+    warn_of_motion(model, file_report);
+
+    for (SceneOrigin origin;;) {
+        GltfReport report = file_report;
+        SceneBuilder builder(origin.world());
+        Scene& scene = builder.scene();
+        scene.name = path.filename().string();
+        scene.transfer = Transfer::srgb;
+        scene.up = glm::vec3(0.0f, 1.0f, 0.0f);
+        std::vector<PlacedCamera> cameras = read_nodes(model, builder, report);
+        if (!origin.suits(builder.extent())) continue;
+        if (builder.geometry().seen_count() == 0) report.warn("nothing to show: no triangle");
+        add_cameras(model, std::move(cameras), builder, report);
+        finish_gltf_light(scene, report);
+        scene.warnings = report.take_warnings();
+        return builder.finish();
+    }
 }
 
 }  // namespace glint

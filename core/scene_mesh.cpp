@@ -1,5 +1,6 @@
 // Mesh files as scenes: the faces of a .ply, packed or not, on a stage of our own.
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include "core/ply.h"
 #include "core/polygon.h"
 #include "core/scene_io.h"
+#include "core/scene_origin.h"
 
 namespace glint {
 namespace {
@@ -58,21 +60,39 @@ Flaws add_mesh(SceneBuilder& builder, const PlyMesh& mesh) {
     return flaws;
 }
 
-PlyMesh read_packed_or_not(const std::filesystem::path& path) {
+// Of the faces: a vertex that none uses lies nowhere.
+Aabb extent_of(const PlyMesh& mesh) {
+    Aabb extent;
+    for (std::size_t begin = 0; begin < mesh.corners.size() && !lies_near(extent); begin += 1 + mesh.corners[begin]) {
+        for (std::size_t i = 1; i <= mesh.corners[begin]; ++i) extent.grow(mesh.positions[mesh.corners[begin + i]]);
+    }
+    return extent;
+}
+
+PlyMesh read_near(std::string_view file, const std::string& name, SceneOrigin& origin) {
+    for (;;) {
+        PlyMesh mesh = read_ply(file, name, origin.world());
+        if (origin.suits(extent_of(mesh))) return mesh;
+    }
+}
+
+PlyMesh read_packed_or_not(const std::filesystem::path& path, SceneOrigin& origin) {
     const std::string name = path.string();
     std::string file = reader::read_file(path);
-    if (!is_gzip(file)) return read_ply(file, name);
+    if (!is_gzip(file)) return read_near(file, name, origin);
     const UnpackedBytes unpacked = gunzip(file, name);
     file = std::string();
-    return read_ply(unpacked.view(), name);
+    return read_near(unpacked.view(), name, origin);
 }
 
 }  // namespace
 
 std::shared_ptr<const Scene> reader::read_mesh(const std::filesystem::path& path) {
-    SceneBuilder builder;
+    SceneOrigin origin;
+    PlyMesh mesh = read_packed_or_not(path, origin);
+    SceneBuilder builder(origin.world());
     builder.scene().name = path.string();
-    const Flaws flaws = add_mesh(builder, read_packed_or_not(path));
+    const Flaws flaws = add_mesh(builder, std::exchange(mesh, {}));
     if (builder.geometry().triangles.empty()) {
         throw SceneError(fmt::format("{}: nothing to show: {} faces, none with an area", path.string(), flaws.faces));
     }

@@ -5,6 +5,7 @@
 #include "core/contained_path.h"
 #include "core/p3f_reader.h"
 #include "core/scene_io.h"
+#include "core/scene_origin.h"
 
 namespace glint {
 namespace {
@@ -116,30 +117,47 @@ void read_statements(Reader& r) {
     r.messages.fail(first_line, fmt::format("not a P3F or NFF file: {} is no statement, and no other follows", first_unknown));
 }
 
+// Planes lie everywhere: without anything else the view tells where their scene is.
+Aabb extent_of(const Reader& r) {
+    Aabb extent = r.builder.extent();
+    if (extent.empty() && r.view.eye && r.view.target) {
+        for (const glm::dvec3 p : {*r.view.eye, *r.view.target}) extent.grow(r.builder.scene().local(p));
+    }
+    return extent;
+}
+
+// What is left when all statements were read.
+void finish_reading(Reader& r, const LoadOptions& options) {
+    Scene& scene = r.builder.scene();
+    finish_view(r.view, r.renamed_dialect || r.view.renamed, r.builder, r.messages);
+    if (!r.environment.empty() && options.load_environment && options.environment.empty()) load_sky_box(r);
+
+    const Geometry& geometry = r.builder.geometry();
+    if (geometry.bounded_count() == 0 && geometry.planes.empty()) r.messages.warn("no shape: only the background is seen");
+    const bool glows = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                   [](const Material& m) { return m.emission != glm::vec3(0.0f); });
+    if (scene.lights.empty() && !glows) r.messages.warn("no light: surfaces stay black but for what they mirror");
+    scene.warnings = r.messages.take();
+}
+
 }  // namespace
 
 std::shared_ptr<const Scene> reader::read_p3f(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                                               const LoadOptions& options) {
-    Messages messages(name);
-    refuse_binary(text, messages);
-    Lexer lexer(text, messages);
-    SceneBuilder builder;
-    Scene& scene = builder.scene();
-    scene.name = name;
-    scene.transfer = Transfer::linear;
+    for (SceneOrigin origin;;) {
+        Messages messages(name);
+        refuse_binary(text, messages);
+        Lexer lexer(text, messages);
+        SceneBuilder builder(origin.world());
+        builder.scene().name = name;
+        builder.scene().transfer = Transfer::linear;
 
-    Reader r{messages, lexer, builder, folder};
-    read_statements(r);
-    finish_view(r.view, r.renamed_dialect || r.view.renamed, builder, messages);
-    if (!r.environment.empty() && options.load_environment && options.environment.empty()) load_sky_box(r);
-
-    const Geometry& geometry = builder.geometry();
-    if (geometry.bounded_count() == 0 && geometry.planes.empty()) messages.warn("no shape: only the background is seen");
-    const bool glows = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                   [](const Material& m) { return m.emission != glm::vec3(0.0f); });
-    if (scene.lights.empty() && !glows) messages.warn("no light: surfaces stay black but for what they mirror");
-    scene.warnings = messages.take();
-    return builder.finish();
+        Reader r{messages, lexer, builder, folder};
+        read_statements(r);
+        if (!origin.suits(extent_of(r))) continue;
+        finish_reading(r, options);
+        return builder.finish();
+    }
 }
 
 }  // namespace glint
