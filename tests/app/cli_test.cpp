@@ -148,6 +148,23 @@ TEST_F(CommandLine, CameraOptionsMoveTheCamera) {
     EXPECT_NE(contents(path("a.png")), contents(path("b.png")));
 }
 
+TEST_F(CommandLine, FarOutPositionsArePointsOfTheWorld) {
+    const std::string scene =
+        write("far.p3f",
+              "v from 1000000.25 2000000.5 -2999996 at 1000000 2000000 -3000000 up 0 1 0 angle 45 hither 1\n"
+              "resolution 32 24 l 1000003 2000009 -2999990 1 1 1 f 1 0.5 0.2 1 0 1 0 1\n"
+              "s 1000000 2000000 -3000000 1 s 1000000.5 2000000.5 -2999999.25 0.25");
+    const std::string command = "render " + scene + " --spp 2 -o ";
+    ASSERT_EQ(glint(command + path("a.png")).code, 0);
+    ASSERT_EQ(glint(command + path("b.png") + " --camera-position 1000000.25,2000000.5,-2999996").code, 0);
+    EXPECT_EQ(contents(path("a.png")), contents(path("b.png")));
+    ASSERT_EQ(glint(command + path("b.png") + " --camera-focal-point 1000000.125,2000000,-3000000").code, 0);
+    EXPECT_NE(contents(path("a.png")), contents(path("b.png")));
+    const Outcome info = glint("info " + scene);
+    EXPECT_NE(info.out.find("bounds 999999.0"), std::string::npos) << info.out;
+    EXPECT_NE(info.out.find("stored relative to 1000000 2000000 -3000000"), std::string::npos) << info.out;
+}
+
 TEST_F(CommandLine, ASceneWithoutEnvironmentCanHaveTheProceduralSky) {
     ASSERT_EQ(glint(quick + "-o " + path("a.png")).code, 0);
     ASSERT_EQ(glint(quick + "--background color -o " + path("b.png")).code, 0);
