@@ -36,6 +36,8 @@ Camera::Camera(const CameraPose& pose, int width, int height) {
     lens_v_ = glm::vec3(up * static_cast<double>(pose.lens_radius));
     inverse_width_ = 1.0f / static_cast<float>(width);
     inverse_height_ = 1.0f / static_cast<float>(height);
+    middle_x_ = 0.5f * static_cast<float>(width);
+    middle_y_ = 0.5f * static_cast<float>(height);
     lens_radius_ = pose.lens_radius;
     focus_distance_ = pose.focus_distance > 0.0f ? pose.focus_distance : static_cast<float>(distance);
 }
@@ -46,7 +48,8 @@ Camera::Camera(const CameraPose& pose, int width, int height) {
     for (std::size_t first = 0; first < n; first += kRun) {
 #pragma GCC ivdep
         for (std::size_t k = first; k < first + kRun; ++k) {
-            const glm::vec3 d = (right_ * (x[k] * inverse_width_ - 0.5f) + up_ * (0.5f - y[k] * inverse_height_)) - back_;
+            const glm::vec3 d =
+                (right_ * ((x[k] - middle_x_) * inverse_width_) + up_ * ((middle_y_ - y[k]) * inverse_height_)) - back_;
             const float length = std::sqrt(glm::dot(d, d));
             rays.direction[0][k] = d.x / length;
             rays.direction[1][k] = d.y / length;

@@ -32,7 +32,8 @@ public:
     // The ray through image position (x, y) in pixels from the top left, y down; (0.5, 0.5) is the first pixel's centre.
     // lens: a point of the unit disk, (0, 0) for the lens centre. The direction has unit length.
     [[nodiscard]] Ray ray(float x, float y, glm::vec2 lens) const noexcept {
-        const glm::vec3 d = (right_ * (x * inverse_width_ - 0.5f) + up_ * (0.5f - y * inverse_height_)) - back_;
+        // From the middle, so that the left half is the exact mirror image of the right one, whatever the size.
+        const glm::vec3 d = (right_ * ((x - middle_x_) * inverse_width_) + up_ * ((middle_y_ - y) * inverse_height_)) - back_;
         Ray ray;
         ray.origin = eye_;
         ray.direction = d;
@@ -57,7 +58,7 @@ private:
 
     glm::vec3 eye_{0.0f}, right_{0.0f}, up_{0.0f}, back_{0.0f};  // right_, up_ scaled to the window at distance 1
     glm::vec3 lens_u_{0.0f}, lens_v_{0.0f};                      // lens axes, scaled by the lens radius
-    float inverse_width_ = 1.0f, inverse_height_ = 1.0f;
+    float inverse_width_ = 1.0f, inverse_height_ = 1.0f, middle_x_ = 0.5f, middle_y_ = 0.5f;
     float lens_radius_ = 0.0f, focus_distance_ = 1.0f;
 };
 
