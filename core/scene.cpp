@@ -26,6 +26,22 @@ void move(Geometry& geometry, glm::dvec3 by) {
     for (Cone& c : geometry.cones) shift(c.base), shift(c.apex);
 }
 
+// What no primitive is made of must not show: a rough mirror among it would decide how rough all other mirrors are, and glass
+// would bring in the glass kernel. Indices stay as they are.
+void forget_unused_materials(Scene& scene) {
+    std::vector<bool> used(scene.materials.size());
+    const auto mark = [&](const Surfaces& surfaces) {
+        for (const auto& of_kind : surfaces.material_of) {
+            for (const std::uint32_t material : of_kind) used[material] = true;
+        }
+    };
+    mark(scene);
+    for (const Surfaces& prototype : scene.prototypes) mark(prototype);
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (!used[i]) scene.materials[i] = Material();
+    }
+}
+
 }  // namespace
 
 std::uint32_t SceneBuilder::add_material(const Material& m) {
@@ -149,6 +165,7 @@ std::shared_ptr<const Scene> SceneBuilder::finish() {
     close();
     static_cast<Surfaces&>(scene_) = std::move(surfaces_);
     scene_.geometry = std::make_shared<const Geometry>(std::move(geometry_));
+    forget_unused_materials(scene_);
     auto scene = std::make_shared<const Scene>(std::move(scene_));
     *this = SceneBuilder();
     return scene;
