@@ -11,6 +11,7 @@
 #include "tests/accel/adversarial_scenes.h"
 #include "tests/accel/hit_report.h"
 #include "tests/accel/instance_scenes.h"
+#include "tests/long.h"
 
 namespace glint {
 
@@ -115,16 +116,17 @@ protected:
         EXPECT_EQ(comparison.mismatches(), 0u) << "of " << comparison.rays() << " rays; first: " << comparison.first();
     }
     Comparison comparison{GetParam()};
+    const std::size_t wanted = GetParam().rays * scale<std::size_t>(1, 25);
 };
 
-// S-BVH-06, S-GRD-02..05, S-SHD-04, S-BOX-02, S-PLN-03: the same id and the same bits of t, u and v from every structure,
+// S-GRD-02..05, S-SHD-04, S-BOX-02 and S-PLN-03 as well: the same id and the same bits of t, u and v from every structure,
 // and occluded() exactly where there is a hit.
-TEST_P(Adversarial, SameHitAsBruteForce) {
+TEST_P(Adversarial, S_BVH_06_S_BVH_07_SameHitAsBruteForce) {
     const std::vector<glm::dvec3> corners = corners_of_cells(comparison.geometry());
     AdversarialRays source(comparison.geometry(), corners, 1);
     std::vector<Ray> rays, bounded, too_short;
-    for (std::size_t done = 0; done < GetParam().rays; done += rays.size()) {
-        rays.resize(std::min<std::size_t>(kRayBatch - done % 7, GetParam().rays - done));
+    for (std::size_t done = 0; done < wanted; done += rays.size()) {
+        rays.resize(std::min<std::size_t>(kRayBatch - done % 7, wanted - done));
         for (Ray& ray : rays) ray = source.next();
         comparison.compare(rays);
         // A bound exactly at the hit keeps it; one float below, it must go.
@@ -149,11 +151,11 @@ TEST_P(Adversarial, SameHitAsBruteForce) {
 
 // Directions from 1e-45 to 1e38 long, origins up to 1e30, bounds down to the smallest float: reciprocals and products
 // overflow or vanish, and the accelerators must still agree.
-TEST_P(Adversarial, SameHitForExtremeRays) {
+TEST_P(Adversarial, S_BVH_06_SameHitForExtremeRays) {
     AdversarialRays source(comparison.geometry(), {}, 2);
     Random random(3);
     std::vector<Ray> rays;
-    for (std::size_t i = 0; i < GetParam().rays / 4; ++i) {
+    for (std::size_t i = 0; i < wanted / 4; ++i) {
         Ray ray = source.next();
         ray.t_max = kInfinity;
         ray.direction *= random.power_of_ten(-44.0f, 37.0f);
@@ -169,17 +171,17 @@ TEST_P(Adversarial, SameHitForExtremeRays) {
 
 // Bundles as a camera, a lens or a light makes them: neighbours aim close by, from one point or from a small patch, at an edge,
 // a vertex or past everything, and some rays have a bound.
-TEST_P(Adversarial, SameHitForBundles) {
+TEST_P(Adversarial, S_BVH_07_SameHitForBundles) {
     AdversarialRays source(comparison.geometry(), {}, 4);
     Random random(5);
     std::vector<Ray> rays;
-    for (std::size_t done = 0; done < GetParam().rays; done += rays.size()) {
+    for (std::size_t done = 0; done < wanted; done += rays.size()) {
         const Ray axis = source.next();
         const float length = glm::length(axis.direction);
         const float width = random.power_of_ten(-6.0f, -0.3f) * length;
         const float patch = random.below(2) == 0 ? 0.0f : random.power_of_ten(-6.0f, -1.0f) * glm::length(axis.origin);
         const bool bounded = random.below(3) == 0;
-        rays.resize(std::min<std::size_t>(1 + random.below(kRayBatch), GetParam().rays - done));
+        rays.resize(std::min<std::size_t>(1 + random.below(kRayBatch), wanted - done));
         for (std::size_t i = 0; i < rays.size(); ++i) {
             // Sixteen by sixteen, some of them exactly along the axis.
             const glm::vec3 jitter = i % 16 == 3 ? glm::vec3(0.0f) : width * random.in_cube(-1.0f, 1.0f);

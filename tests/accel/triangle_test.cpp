@@ -6,6 +6,7 @@
 #include "accel/accelerator.h"
 #include "tests/accel/adversarial_scenes.h"
 #include "tests/accel/hit_report.h"
+#include "tests/long.h"
 
 namespace glint {
 namespace {
@@ -107,10 +108,11 @@ TEST(Triangle, S_TRI_05_ScalingByAPowerOfTwoScalesTAndKeepsTheWeights) {
 TEST(Triangle, S_TRI_06_NoRayLeaksThroughASharedEdge) {
     Random random(6);
     int leaks = 0;
-    for (int i = 0; i < 1000000; ++i) {
+    for (int rays = 0; rays < scale(1000000, 100000000);) {
         const glm::vec3 a(random.uniform(-1.0f, 1.0f), random.uniform(-1.0f, 1.0f), random.uniform(5.0f, 5.1f));
         const glm::vec3 b(random.uniform(-1.0f, 1.0f), random.uniform(-1.0f, 1.0f), random.uniform(5.0f, 5.1f));
         if (glm::length(b - a) < 0.5f) continue;
+        ++rays;
         const glm::vec3 across(a.y - b.y, b.x - a.x, 0.0f);
         glm::vec3 c = a - across, d = a + across;
         c.z = random.uniform(5.0f, 5.1f);
@@ -127,7 +129,7 @@ TEST(Triangle, S_TRI_06_NoRayLeaksThroughASharedEdge) {
 TEST(Triangle, S_TRI_07_NoRayLeaksThroughASharedVertex) {
     Random random(7);
     int leaks = 0;
-    for (int i = 0; i < 1000000; ++i) {
+    for (int i = 0; i < scale(1000000, 100000000); ++i) {
         const glm::vec3 center(random.uniform(-1.0f, 1.0f), random.uniform(-1.0f, 1.0f), random.uniform(5.0f, 5.1f));
         glm::vec3 rim[6];
         const double turn = random.uniform();
