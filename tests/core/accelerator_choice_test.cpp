@@ -55,6 +55,15 @@ TEST(AcceleratorChoice, MoreRaysNeverAskForALesserTree) {
     EXPECT_TRUE(quality);
 }
 
+// A crowd in the corner of a field: cells of the field's size would hold all of it.
+TEST(AcceleratorChoice, S_GRD_04_NoGridForAStadium) {
+    const auto stadium = load_scene("builtin:stadium,n=10000");
+    for (double rays = 1.0; rays < 1.0e12; rays *= 3.0) {
+        for (const int threads : {1, 2, 64})
+            EXPECT_NE(automatic_accelerator(*stadium, {rays, threads}).kind, AcceleratorKind::grid) << rays << ' ' << threads;
+    }
+}
+
 TEST(AcceleratorChoice, ExpectedRaysGoWithPixelsSamplesAndLights) {
     const auto scene = load_scene("builtin:balls,level=2");
     EXPECT_EQ(expected_rays(*scene, 200, 100, 8).rays, 2.0 * expected_rays(*scene, 100, 100, 8).rays);

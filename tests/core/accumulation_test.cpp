@@ -92,6 +92,18 @@ TEST(Accumulation, S_ACC_03_OneSampleThatIsNotFiniteIsRejectedAndCounted) {
     }
 }
 
+// A clamp would be a bias that nobody sees: however bright a sample is, the mean holds all of it.
+TEST(Accumulation, S_ACC_04_ABrightSampleCountsInFull) {
+    const Rendered black_dot = sky_with_a_spark(-1.0f, 1);
+    for (const float bright : {1e3f, 1e6f, 1e12f, 1e30f}) {
+        const Rendered spark = sky_with_a_spark(bright, 2);
+        EXPECT_EQ(spark.progress.rays.non_finite, 0u);
+        const double others = kSpp * static_cast<double>(black_dot.image.at(kBadX, kBadY).x) + 1.0;
+        const double expected = (others + static_cast<double>(bright)) / kSpp;
+        EXPECT_NEAR(static_cast<double>(spark.image.at(kBadX, kBadY).x) / expected, 1.0, 1e-6) << bright;
+    }
+}
+
 TEST(Accumulation, APixelWithoutAnyFiniteSampleIsBlackAndCounted) {
     SceneBuilder b;
     b.scene().environment.color = glm::vec3(std::numeric_limits<float>::infinity());

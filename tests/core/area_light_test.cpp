@@ -123,6 +123,33 @@ TEST(AreaLight, S_ALT_01_FarNearAndInsideABall) {
     }
 }
 
+// One point of the light for each sample of the pixel means what 256 x 256 points for one receiver mean.
+TEST(AreaLight, S_ALT_02_OnePointASampleMeansWhatManyPointsDo) {
+    const Light light = ceiling_light();
+    const auto scene = floor_under(light, [](SceneBuilder& b) {
+        b.add(Sphere{{0.3f, 1, 0.2f}, 0.35f}, b.add_material(black()));
+    });
+    const BruteForce blockers(scene->geometry);
+    for (const double x : {-0.4, 0.1, 0.6}) {
+        constexpr int kPoints = 256;
+        const glm::vec3 receiver(x, 0, 0);
+        double exact = 0.0;
+        for (int i = 0; i < kPoints * kPoints; ++i) {
+            const glm::dvec2 u((i % kPoints + 0.5) / kPoints, (i / kPoints + 0.5) / kPoints);
+            const LightSample s = sample_light(light, receiver, glm::vec2(u));
+            const bool dark = blockers.occluded({receiver + glm::vec3(0, 1e-4f, 0), s.point - receiver, 0.999f});
+            if (!dark) exact += static_cast<double>(s.arriving.x * s.wi.y) / (kPoints * kPoints);
+        }
+        for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::jittered, SamplerKind::random}) {
+            RenderSettings settings;
+            settings.sampler = kind;
+            const Estimate e = irradiance(scene, x, 0.0, settings, 32, kind == SamplerKind::random ? 4096 : 1024);
+            EXPECT_LE(e.standard_error, .004 * exact) << x;
+            EXPECT_NEAR(e.mean, exact, 3.0 * e.standard_error + 2e-4 * exact) << x << ' ' << static_cast<int>(kind);
+        }
+    }
+}
+
 TEST(AreaLight, S_ALT_01_SamplesOfABallLieOnItAndFaceTheReceiver) {
     Random random(3);
     for (const float scale : {1e-6f, 1.0f, 1e6f}) {

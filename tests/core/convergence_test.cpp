@@ -115,6 +115,27 @@ TEST(Convergence, S_SMP_10_JointCoversPixelAndLightTogether) {
     }
 }
 
+// Between powers of two a sequence is worse than at the last one, so errors are claimed there; but no count is worse than
+// random numbers, so that every pass may be shown.
+TEST(Convergence, S_SMP_07_ErrorsAreClaimedAtPowersOfTwo) {
+    for (const Integrand* f : {&kProduct, &kBell}) {
+        std::vector<double> squares(129);
+        constexpr std::uint32_t kPixels = 2048;
+        for (std::uint32_t pixel = 0; pixel < kPixels; ++pixel) {
+            double sum = 0.0;
+            for (std::uint32_t k = 0; k < 128; ++k) {
+                sum += f->value(glm::dvec2(Sampler(SamplerKind::sobol, pixel, 7, k, 65).square(dimension::pixel)));
+                squares[k + 1] += std::pow(sum / (k + 1.0) - f->exact, 2) / kPixels;
+            }
+        }
+        const auto error = [&](std::size_t n) { return std::sqrt(squares[n]); };
+        for (const std::size_t n : {64u, 65u, 127u, 128u}) note(fmt::format("{}_{}", f->name, n), error(n));
+        EXPECT_GT(error(65), 2.0 * error(64)) << f->name;
+        EXPECT_GT(error(127), 2.0 * error(128)) << f->name;
+        for (std::size_t n = 1; n <= 128; ++n) EXPECT_LE(error(n), 1.05 * error(1) / std::sqrt(n)) << f->name << ' ' << n;
+    }
+}
+
 // Blocks of 8 x 8 strata: the table's value at 64; further blocks are independent, so the error then falls by the root.
 TEST(Convergence, S_SMP_06_JitterFollowsTheTableAtAWholeBlock) {
     struct Row {

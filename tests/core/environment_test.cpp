@@ -42,7 +42,7 @@ TEST(Environment, FacesFollowTheCoursesLeftHandedNames) {
     EXPECT_EQ(face_at(e, {0.2f, 0.1f, -1}), back);
 }
 
-TEST(Environment, EdgesAndCornersBelongToOneFace) {
+TEST(Environment, S_ENV_02_EdgesAndCornersBelongToOneFace) {
     const Environment e = numbered_cube();
     EXPECT_EQ(face_at(e, {1, 1, 1}), top);
     EXPECT_EQ(face_at(e, {-1, -1, -1}), bottom);
@@ -116,7 +116,7 @@ TEST(Environment, EachFaceIsTurnedAsTheCourseTurnsIt) {
 }
 
 // The sides show one panorama from inside: where two meet, the last column of one is beside the first of the other.
-TEST(Environment, SidesMeetAtTheirEdges) {
+TEST(Environment, S_ENV_02_SidesMeetAtTheirEdges) {
     Environment e;
     e.kind = Environment::Kind::cube;
     e.faces.fill(ramp(101, 101));
@@ -144,6 +144,62 @@ TEST(Environment, TheSkyIsSmoothFromTheGroundToTheZenith) {
         EXPECT_LT(glm::length(now - before), 0.1f) << degrees;
         before = now;
     }
+}
+
+// Along every direction to a pole, one colour: no seam, and no angle that a rounding pushes out of its range.
+TEST(Environment, S_ENV_01_ThePolesHaveOneColourFromEverywhere) {
+    Environment e;
+    e.kind = Environment::Kind::sky;
+    for (const float pole : {1.0f, -1.0f}) {
+        const glm::vec3 expected = e.radiance({0, pole, 0});
+        for (int i = 0; i < 360; ++i) {
+            const double phi = i * 3.14159265358979 / 180.0;
+            for (const double off : {1e-30, 1e-10, 1e-7}) {
+                const glm::vec3 seen = e.radiance({off * std::cos(phi), pole, off * std::sin(phi)});
+                ASSERT_LE(glm::length(seen - expected), 1e-6f) << i << ' ' << off;
+            }
+            // Round the horizon it is one colour as well: nothing depends on the azimuth.
+            const glm::vec3 around = e.radiance({std::cos(phi), 0.2, std::sin(phi)});
+            ASSERT_LE(glm::length(around - e.radiance({1, 0.2f, 0})), 1e-6f) << i;
+        }
+    }
+    // A unit vector whose rounded length exceeds 1.
+    e.up = glm::vec3(0.57735032f);
+    const glm::vec3 over = e.radiance(glm::vec3(1.0f));
+    EXPECT_TRUE(std::isfinite(over.x) && std::isfinite(over.y) && std::isfinite(over.z));
+    EXPECT_LE(glm::length(over - e.zenith), 1e-6f);
+}
+
+// Two smooth faces that agree along their edge: no jump larger than a texel's step, edges and corners included.
+TEST(Environment, S_ENV_02_ARampIsContinuousAcrossEdges) {
+    Environment e;
+    e.kind = Environment::Kind::cube;
+    constexpr int kSize = 128;
+    // Each texel shows its own direction's height, so all faces are pieces of one function.
+    for (int f = 0; f < 6; ++f) {
+        CubeFace& face = e.faces[static_cast<std::size_t>(f)];
+        face = {kSize, kSize, {}};
+        for (int y = 0; y < kSize; ++y) {
+            for (int x = 0; x < kSize; ++x) {
+                const double s = 2.0 * x / (kSize - 1) - 1.0, t = 2.0 * y / (kSize - 1) - 1.0;
+                const double height = f == top ? 1.0 : f == bottom ? -1.0 : t;
+                const auto byte = static_cast<std::uint8_t>(std::lround(127.5 + 127.5 * height / std::sqrt(1.0 + s * s + t * t)));
+                face.rgb.insert(face.rgb.end(), {byte, byte, byte});
+            }
+        }
+    }
+    const auto expect_smooth = [&](glm::dvec3 from, glm::dvec3 to) {
+        float before = e.radiance(glm::vec3(from)).x;
+        for (int i = 1; i <= 4000; ++i) {
+            const float now = e.radiance(glm::vec3(glm::mix(from, to, i / 4000.0))).x;
+            ASSERT_LE(std::abs(now - before), 5.0f / 255.0f) << i;
+            before = now;
+        }
+    };
+    // Across edges between sides, to the top and to the bottom, and through corners.
+    expect_smooth({1, 0.3, 0.2}, {0.2, 0.3, 1}), expect_smooth({-1, -0.7, 0.2}, {0.1, -0.6, -1});
+    expect_smooth({1, 0.2, 0.4}, {0.3, 1, 0.1}), expect_smooth({0.1, -0.2, -1}, {0.1, -1, -0.3});
+    expect_smooth({1, 0.5, 0.5}, {0.5, 1, 1}), expect_smooth({-1, -0.4, -0.4}, {-0.4, -1, -1});
 }
 
 TEST(Environment, TheSunIsADiskAboveTheGround) {

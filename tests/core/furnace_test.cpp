@@ -49,6 +49,35 @@ TEST(Furnace, S_DEP_01_TenThousandBouncesNeedNoStack) {
     EXPECT_EQ(probe.counts().reflection, 10000u);
 }
 
+// What the limit cuts off is black and told, and never replaced by the background: it would look like light.
+TEST(Furnace, S_DEP_02_CutBranchesAreBlackAndReported) {
+    for (const bool clear : {false, true}) {
+        for (const int depth : {0, 1, 2}) {
+            SceneBuilder b;
+            const std::uint32_t m = b.add_material(clear ? glass(1.5f) : mirror(0.8f));
+            if (clear)
+                b.add(Sphere{{0, 0, 0}, 1.0f}, m);
+            else
+                for (const double side : {-1.0, 1.0}) b.add(plane_at({0, 0, side}, {0, 0, -side}), m);
+            b.scene().environment.color = glm::vec3(1.0f);
+            RenderSettings settings = centred();
+            settings.depth = depth;
+            Probe probe(b.finish(), settings);
+            const double seen = clear ? probe.radiance({0.3f, 0.2f, 4}, {0, 0, -1}).x : probe.radiance({0, 0, 0}, {0, 0, 1}).x;
+            const RayCounts& counts = probe.counts();
+            EXPECT_GT(counts.depth_cut, 0u);
+            // Mirrors alone see no sky; glass sees what its uncut branches carry, and the rest is told.
+            if (!clear) {
+                EXPECT_EQ(seen, 0.0) << depth;
+                EXPECT_NEAR(counts.depth_cut_weight, std::pow(0.8, depth + 1), 1e-6);
+            } else {
+                EXPECT_NEAR(seen + counts.depth_cut_weight, 1.0, 1e-6) << depth;
+                EXPECT_LT(seen, depth == 0 ? 1e-9 : 0.97);
+            }
+        }
+    }
+}
+
 // A ray that meets the unit ball of glass at the angle of incidence `angle`, in a white furnace.
 double glass_ball_in_furnace(double angle, int depth, RayCounts* counts = nullptr) {
     SceneBuilder b;

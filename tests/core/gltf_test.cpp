@@ -191,7 +191,7 @@ TEST_F(Gltf, DielectricsAndMetalsFollowTheMapping) {
     EXPECT_EQ(load(triangle())->material(0).mirror, glm::vec3(1.0f));  // the format's default is a rough white metal
 }
 
-TEST_F(Gltf, TheHighlightReflectsItsColourAndNoMore) {
+TEST_F(Gltf, S_BPH_04_TheHighlightReflectsItsColourAndNoMore) {
     for (const double roughness : {0.1, 0.3, 0.5, 0.8, 1.0}) {
         const Material m = material({{"pbrMetallicRoughness", {{"roughnessFactor", roughness}}}});
         // Over the hemisphere at normal incidence; n.h = cos(theta / 2).

@@ -1,6 +1,9 @@
 // Renders a scene to an image the way `glint render` does: for tests of whole pictures.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cctype>
 #include <memory>
 #include <string>
 
@@ -49,6 +52,13 @@ void for_each_isa(Test test) {
         test(isa);
     }
     use_isa(before);
+}
+
+// A scene's spec, builtin:NAME,KEY=VALUE, as a test may be called.
+inline std::string test_name(const testing::TestParamInfo<const char*>& spec) {
+    std::string name(spec.param + 8);
+    for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+    return name;
 }
 
 // Number of pixels that are not equal to the bit.

@@ -35,7 +35,7 @@ protected:
     }
 };
 
-TEST_P(SameBits, FromEveryAcceleratorAndThreadCount) {
+TEST_P(SameBits, S_DET_01_FromEveryAcceleratorAndThreadCount) {
     Picture p = picture(3);
     p.settings.features = everything();
     p.threads = 1;
@@ -51,7 +51,7 @@ TEST_P(SameBits, FromEveryAcceleratorAndThreadCount) {
 }
 
 // Single rays, packets and rays in flight all occur here; same_hit_test compares each of them by itself.
-TEST_P(SameBits, FromEveryInstructionSet) {
+TEST_P(SameBits, S_DET_01_FromEveryInstructionSet) {
     Picture p = picture(3);
     p.settings.features = everything();
     p.settings.depth = 4;
@@ -91,7 +91,7 @@ TEST_P(SameBits, OfACropAndTheWholePicture) {
 }
 
 // A pause, a restart with another frame in between, and a preview: the picture does not remember them.
-TEST_P(SameBits, AfterPausesAndRestarts) {
+TEST_P(SameBits, S_DET_01_AfterPausesAndRestarts) {
     Picture p = picture(4);
     const Image expected = render_picture(scene, p);
     Renderer renderer(2, true);
@@ -110,7 +110,7 @@ TEST_P(SameBits, AfterPausesAndRestarts) {
     EXPECT_EQ(differing_pixels(expected, image), 0u);
 }
 
-// S-MET-01. Scaling by a power of two is exact, so any absolute epsilon shows as a difference.
+// Scaling by a power of two is exact, so any absolute epsilon shows as a difference.
 TEST_P(SameBits, S_MET_01_AtEveryScaleOfTwo) {
     Picture p = picture(2);
     p.settings.features = everything();
@@ -194,20 +194,12 @@ TEST_P(SameBits, OneSampleWhereNothingIsRandom) {
     EXPECT_GE(many.rays.camera, 64 * once.rays.camera);
 }
 
-std::string scene_name(const testing::TestParamInfo<const char*>& info) {
-    std::string name(info.param + 8);
-    for (char& c : name) {
-        if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-    }
-    return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Builtin, SameBits, testing::ValuesIn(kScenes), scene_name);
+INSTANTIATE_TEST_SUITE_P(Builtin, SameBits, testing::ValuesIn(kScenes), test_name);
 
 // The paper's seven scenes as their authors wrote them, at reduced size.
 class CourseScene : public testing::TestWithParam<const char*> {};
 
-TEST_P(CourseScene, SameBitsFromEveryAcceleratorAndThreadCount) {
+TEST_P(CourseScene, S_DET_01_SameBitsFromEveryAcceleratorAndThreadCount) {
     const std::string path = std::string(GLINT_SHARED "/scenes/p3f/") + GetParam() + ".p3f";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
     LoadOptions options;

@@ -18,6 +18,7 @@
 #include "core/radiance.h"
 #include "core/renderer.h"
 #include "core/tile_kernels.h"
+#include "tests/long.h"
 
 namespace glint::test {
 
@@ -195,7 +196,6 @@ private:
     Workspace work_;
 };
 
-// What a whole render gave.
 struct Rendered {
     Image image;
     Progress progress;
@@ -230,7 +230,6 @@ inline bool same_bits(const Image& a, const Image& b) {
     return a.width == b.width && a.height == b.height && a.pixels == b.pixels;
 }
 
-// Mean of the first channel over the picture.
 inline double mean_of(const Image& image) {
     double sum = 0.0;
     for (const glm::vec3& p : image.pixels) sum += static_cast<double>(p.x);
@@ -256,6 +255,7 @@ inline Estimate estimate(const std::vector<double>& replicates) {
 inline Estimate estimate_radiance(Probe& probe, glm::vec3 origin, glm::vec3 direction, std::uint32_t replicates = 16,
                                   std::uint64_t samples = 1024) {
     std::vector<double> means;
+    samples *= scale<std::uint64_t>(1, 100);
     for (std::uint32_t pixel = 0; pixel < replicates; ++pixel) {
         double sum = 0.0;
         for (std::uint64_t k = 0; k < samples; ++k) sum += probe.radiance(origin, direction, k, pixel).x;
@@ -272,7 +272,7 @@ inline void note(const std::string& name, double value) { testing::Test::RecordP
 inline void expect_estimate(const std::string& name, const Estimate& e, double exact, double relative_error = 0.003) {
     note(name, e.mean);
     note(name + "_error", e.standard_error);
-    EXPECT_LE(e.standard_error, relative_error * exact) << name;
+    EXPECT_LE(e.standard_error, relative_error * scale(1.0, 0.1) * exact) << name;
     EXPECT_NEAR(e.mean, exact, 3.0 * e.standard_error + 2e-6 * exact) << name;
 }
 
