@@ -28,10 +28,12 @@ struct Exhibit {
     std::vector<Pair> pairs;
     std::string plot;      // an SVG, may be empty
     double allowed = 0.0;  // defects that ours may have: above 0 only where they are a measured error, not a count
+    bool open = false;     // glint fails as the textbook does, and the exhibit says so
 };
 
 // width: of a picture, a multiple of 8. Each function makes one exhibit.
 Exhibit shadow_acne(int width);
+Exhibit horizon_acne(int width);
 Exhibit leaking_edges(int width);
 Exhibit lost_triangles(int width);
 Exhibit far_spheres(int width);
@@ -44,5 +46,6 @@ Exhibit light_before_occluder(int width);
 Exhibit centre_times_fraction(int width);
 Exhibit correlated_strata(int width);
 Exhibit stalled_sums(int width);
+Exhibit terminator(int width);
 
 }  // namespace glint::gallery

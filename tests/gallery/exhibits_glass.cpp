@@ -213,7 +213,12 @@ Exhibit zoomed_refraction(int width) {
     const double lens = 2.0 * (std::asin(0.1) - std::asin(0.1 / kIor)) * 180.0 / kPi;
     const Image right = rendered(whole, pose, width, height, 1, centred());
     // Without a slip the textbook's recursion gives the product's picture: so one thing differs in each pair.
-    const ImageDifference check = difference(recursion(Slip::none), right);
+    const Image without = recursion(Slip::none);
+    std::size_t other = 0;
+    for (std::size_t i = 0; i < right.pixels.size(); ++i) {
+        const glm::vec3 apart = glm::abs(without.pixels[i] - right.pixels[i]);
+        other += std::max(apart.x, std::max(apart.y, apart.z)) > 1e-3f ? 1 : 0;
+    }
     const Side ours{shown(right), fmt::format("Bent by {:.4f}&deg;", bend_of_product(whole)),
                     std::abs(bend_of_product(whole) - lens)};
     const auto pair = [&](const char* name, const char* what, const Image& image, double degrees) {
@@ -226,9 +231,9 @@ Exhibit zoomed_refraction(int width) {
     const double through_shell =
         2.0 * (std::asin(h) - std::asin(h / kIor) + std::asin(in_shell / kIor) - std::asin(in_shell)) * 180.0 / kPi;
     pair("refraction-hollow", "Hollow", rendered(shell, pose, width, height, 1, centred()), through_shell);
-    e.pairs.back().ours.caption +=
-        fmt::format("; the recursion without a slip differs from it in {} of {} pixels by more than rounding",
-                    check.max > 1e-3 ? check.differing : 0, check.pixels);
+    e.pairs.back().ours.caption += fmt::format(
+        "; the textbook&rsquo;s recursion without a slip differs from it in {} of {} pixels by more than a thousandth", other,
+        right.pixels.size());
     return e;
 }
 

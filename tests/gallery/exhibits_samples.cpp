@@ -146,7 +146,7 @@ Exhibit stalled_sums(int width) {
     Exhibit e{"S-ACC-01",
               "Sums that no longer grow",
               "A ramp of greys, added up pass by pass and divided by their number, over a strip of the true values: once the sum "
-              "is 2<sup>24</sup> times the sample, "
+              "is about 2<sup>24</sup> times the sample, "
               "float rounds the addition away, and the longer one waits the darker the picture becomes.",
               "glint adds in double, 24 bytes a pixel: 10<sup>8</sup> passes cost it no digit that a picture shows.",
               "columns off by more than a millionth",
@@ -191,8 +191,7 @@ Exhibit stalled_sums(int width) {
         std::vector<float> right;
         for (const glm::vec3& p : image.pixels) right.push_back(p.x);
         Side float_side = draw(left), double_side = draw(right);
-        for (Side* s : {&float_side, &double_side})
-            s->caption = fmt::format("{} passes. {}", grouped(static_cast<double>(passes)), s->caption);
+        for (Side* s : {&float_side, &double_side}) s->caption = grouped(static_cast<double>(passes)) + " passes. " + s->caption;
         e.pairs.push_back({fmt::format("sums-{}", passes), std::move(float_side), std::move(double_side)});
     }
     return e;

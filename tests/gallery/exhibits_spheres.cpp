@@ -93,11 +93,11 @@ Exhibit far_spheres(int width) {
 Exhibit floor_sphere(int width) {
     Exhibit e{"S-SPH-02",
               "A floor that is a huge sphere",
-              "A ball of radius 1,000,000 as the ground, the eye one unit above it: "
-              "<i>c</i>&nbsp;=&nbsp;<i>f&middot;f</i>&nbsp;&minus;&nbsp;<i>r</i>&sup2; "
-              "is a difference of numbers of 10<sup>12</sup>, whose neighbours in float are 65,536 apart, so the chequers break "
-              "into terraces.",
-              "glint&rsquo;s double leaves a relative error of about 10<sup>&minus;10</sup> before the one rounding at the end.",
+              "The ground is the Earth, a ball of radius 6,371,000, the eye one unit above it: "
+              "<i>c</i>&nbsp;=&nbsp;<i>f&middot;f</i>&nbsp;&minus;&nbsp;<i>r</i>&sup2; is a "
+              "difference of numbers of 4&thinsp;&middot;&thinsp;10<sup>13</sup>, whose neighbours in float are 4,194,304 apart, "
+              "so the chequers break into terraces.",
+              "glint computes the root in double and rounds it to float once, at the end.",
               "pixels with a distance off by more than 0.00001 of it, or a wrong hit or miss",
               kTextbookCode,
               kOurCode,
@@ -105,7 +105,7 @@ Exhibit floor_sphere(int width) {
               {}};
     const CameraPose pose = camera_at({0, 1, 0}, {0.35f, 0.72f, -1}, 50.0f);
     SceneBuilder b;
-    const Sphere ground{{0, -1e6f, 0}, 1e6f};
+    const Sphere ground{{0, -6371000.0f, 0}, 6371000.0f};
     b.add(ground, b.add_material(matte(glm::vec3(0.8f))));
     const Stage stage(finish(b, pose));
     const auto draw = [&](Distance distance) {

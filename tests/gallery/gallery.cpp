@@ -1,7 +1,9 @@
 // Renders the gallery of failures: gallery -o DIR [--width PIXELS]. Writes DIR/index.html, which holds everything, and the
 // pictures beside it. Exits with 1 when an exhibit does not show what it says: equal pictures, no defect in the textbook's or
-// one in ours.
+// one in ours. Exhibits of failures that glint shares are marked open and only counted.
 
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string_view>
@@ -12,9 +14,10 @@
 namespace glint::gallery {
 namespace {
 
-constexpr Exhibit (*kExhibits[])(int) = {
-    shadow_acne,  leaking_edges,     lost_triangles,        false_shadows,         far_spheres,       floor_sphere, early_exit,
-    fresnel_slip, zoomed_refraction, light_before_occluder, centre_times_fraction, correlated_strata, stalled_sums};
+constexpr Exhibit (*kExhibits[])(int) = {shadow_acne,       horizon_acne,      leaking_edges,         lost_triangles,
+                                         false_shadows,     far_spheres,       floor_sphere,          early_exit,
+                                         fresnel_slip,      zoomed_refraction, light_before_occluder, centre_times_fraction,
+                                         correlated_strata, terminator,        stalled_sums};
 
 // Says on standard error what an exhibit fails to show.
 bool shows(const Exhibit& e) {
@@ -22,9 +25,11 @@ bool shows(const Exhibit& e) {
     for (const Pair& p : e.pairs) {
         const bool differ = p.textbook.picture.rgb != p.ours.picture.rgb;
         std::printf("%-9s %-18s textbook %10g  ours %10g%s\n", e.id.c_str(), p.name.c_str(), p.textbook.defects, p.ours.defects,
-                    differ ? "" : "  the pictures are equal");
-        if (p.textbook.defects > 0.0 && !differ) good = false;
-        if (p.ours.defects > e.allowed) good = false;
+                    e.open   ? "  open"
+                    : differ ? ""
+                             : "  the pictures are equal");
+        if (p.textbook.defects > 0.0 && !differ && !e.open) good = false;
+        if (p.ours.defects > e.allowed && !e.open) good = false;
     }
     // Among the pairs of an exhibit there may be one where the textbook still works, to show from where on it does not.
     const auto fails = [&](const Pair& p) { return p.textbook.defects > e.allowed; };

@@ -3,7 +3,6 @@
 // Knows no exhibit. Invariant: both sides of a pair use one camera, one scene, one shading.
 #pragma once
 
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
@@ -50,7 +49,7 @@ inline void put(const Image& part, int x0, Image& whole) {
     }
 }
 
-// A scene with its accelerator, and the textbook's shadow query beside the product's.
+// A scene with its accelerator.
 struct Stage {
     std::shared_ptr<const Scene> scene;
     std::shared_ptr<const AnyAccelerator> accelerator;
@@ -130,8 +129,12 @@ inline glm::vec3 lit(glm::vec3 albedo, float n_l, bool seen) {
 
 // Numbers as a caption prints them: 1,234,567.
 inline std::string grouped(double count) {
-    std::string s = fmt::format("{:.0f}", count);
-    for (int i = static_cast<int>(s.size()) - 3; i > 0; i -= 3) s.insert(static_cast<std::size_t>(i), 1, ',');
+    const std::string digits = fmt::format("{:.0f}", count);
+    std::string s;
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+        if (i > 0 && (digits.size() - i) % 3 == 0) s += ',';
+        s += digits[i];
+    }
     return s;
 }
 
