@@ -54,6 +54,10 @@ struct BvhView {
     float magnitude = 0.0f;    // the largest absolute coordinate
     float leaf_extent = 0.0f;  // mean of the leaves' widest sides, weighted by area: what a ray is likely to meet
 
+    // A reference to a node is the number of its unit: no bit above is set.
+    [[nodiscard, gnu::always_inline]] const BvhNode& node(BvhRef r) const {
+        return *reinterpret_cast<const BvhNode*>(units + std::size_t{r} * kBvhUnit);
+    }
     template <class T>
     [[nodiscard, gnu::always_inline]] const T& at(BvhRef r) const {
         return *reinterpret_cast<const T*>(units + (r & kUnitMask) * kBvhUnit);

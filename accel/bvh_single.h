@@ -105,7 +105,7 @@ template <bool any, class Visit>
     for (;;) {
         while ((at & kLeafBit) == 0) {
             visit(at);
-            const BvhNode& node = *reinterpret_cast<const BvhNode*>(bvh.units + std::size_t{at} * kBvhUnit);
+            const BvhNode& node = bvh.node(at);
             Float8 near;
             const unsigned mask = enter(node, slabs, limit, near);
             if (mask == 0) {

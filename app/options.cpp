@@ -68,7 +68,7 @@ public:
         text("--fresnel", "exact|schlick", "reflectance of glass", [this](auto n, auto v) {
             o_.settings.fresnel = static_cast<Fresnel>(choice(n, v, std::array<std::string_view, 2>{"exact", "schlick"}));
         });
-        text("--sampler", "NAME", "sobol, joint, jittered, random or regular",
+        text("--sampler", "NAME", "sobol, joint (pixel, lens and first light from one sequence), jittered, random or regular",
              [this](auto n, auto v) { o_.settings.sampler = static_cast<SamplerKind>(choice(n, v, kSamplerNames)); });
         text("--depth", "N", "bounces after the camera ray; default 8",
              [this](auto n, auto v) { o_.settings.depth = number(n, v, 0, 100000, "a number of bounces (0 to 100000)"); });

@@ -73,7 +73,7 @@ public:
                   work.lanes.bounces[lane],
                   false};
         if constexpr ((kParts & kernel_part::mirror) != 0) {
-            if (m.has_mirror()) follow_mirror(from, work.vertices.points[k], m, at(work.vertices.wo, k));
+            if (m.has_mirror()) follow_mirror(from, work.vertices.points[k], m, vector_at(work.vertices.wo, k));
         }
         if constexpr ((kParts & kernel_part::glass) != 0) {
             if (m.glass) follow_glass(from, k, m);
@@ -179,18 +179,15 @@ private:
         const double reflected = g.reflected[k];
         if (plan_.refractions && g.transmits[k] != 0) {
             const glm::vec3 weight = m.transmittance * static_cast<float>(1.0 - reflected);
-            if (follow(from, at(g.beyond, k), at(g.refracted, k), weight, 1, work.counts.refraction)) {
+            if (follow(from, vector_at(g.beyond, k), vector_at(g.refracted, k), weight, 1, work.counts.refraction)) {
                 work.media[from.to] = work.media_beyond[k];
             }
         }
         if (plan_.reflections && reflected > 0.0) {
             const glm::vec3 weight(static_cast<float>(reflected));
-            if (follow(from, at(g.here, k), at(g.mirrored, k), weight, 0, work.counts.reflection)) work.media[from.to] = here;
+            if (follow(from, vector_at(g.here, k), vector_at(g.mirrored, k), weight, 0, work.counts.reflection))
+                work.media[from.to] = here;
         }
-    }
-
-    [[nodiscard]] static glm::vec3 at(const float (&rows)[3][kRayBatch], std::size_t k) {
-        return {rows[0][k], rows[1][k], rows[2][k]};
     }
 
     [[nodiscard]] float ior_of(std::uint32_t medium) const {

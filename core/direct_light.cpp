@@ -14,7 +14,6 @@ namespace {
 using namespace light_formulas;
 
 constexpr std::size_t kRun = kRunOfVertices;
-using Rows = float[3][kRayBatch];
 
 // How a light is sampled: each with a loop of its own; the rare ones point by point.
 enum class Source { plain, plain_physical, spread, quad, physical_quad, physical_sphere, other };
@@ -32,11 +31,6 @@ Source source_of(const Light& light) {
         case Light::Shape::directional: break;
     }
     return Source::other;
-}
-
-[[gnu::always_inline]] inline glm::vec3 at(const Rows& rows, std::size_t k) { return {rows[0][k], rows[1][k], rows[2][k]}; }
-[[gnu::always_inline]] inline void put(glm::vec3 v, Rows& rows, std::size_t k) {
-    rows[0][k] = v.x, rows[1][k] = v.y, rows[2][k] = v.z;
 }
 
 template <Source kSource>
@@ -69,10 +63,10 @@ struct DirectLightLoops {
                                                          std::size_t first) {
 #pragma GCC ivdep
         for (std::size_t k = first; k < first + kRun; ++k) {
-            const LightSample s = sample<kSource>(light, at(v.points.p, k), glm::vec2(d.u[0][k], d.u[1][k]));
-            put(s.wi, d.wi_, k);
-            if constexpr (kSource != Source::plain && kSource != Source::plain_physical) put(s.point, d.point_, k);
-            put(s.arriving, d.light_, k);
+            const LightSample s = sample<kSource>(light, vector_at(v.points.p, k), glm::vec2(d.u[0][k], d.u[1][k]));
+            set_vector(d.wi_, k, s.wi);
+            if constexpr (kSource != Source::plain && kSource != Source::plain_physical) set_vector(d.point_, k, s.point);
+            set_vector(d.light_, k, s.arriving);
         }
     }
 
@@ -80,11 +74,12 @@ struct DirectLightLoops {
     [[gnu::always_inline]] static inline void highlight_run(DirectLight& d, const Vertices& v, std::size_t first) {
 #pragma GCC ivdep
         for (std::size_t k = first; k < first + kRun; ++k) {
-            const glm::vec3 wi = at(d.wi_, k), h = at(v.wo, k) + wi;
+            const glm::vec3 wi = vector_at(d.wi_, k), h = vector_at(v.wo, k) + wi;
             const float h2 = glm::dot(h, h);
-            const float n_h = glm::dot(at(v.points.ns, k), h) / std::sqrt(h2);
-            const bool shows = (v.highlit[k] != 0) & (h2 > 0.0f) & (n_h > 0.0f) & (glm::dot(at(v.points.ns, k), wi) > 0.0f) &
-                               (glm::dot(at(v.points.ng, k), wi) > 0.0f);
+            const float n_h = glm::dot(vector_at(v.points.ns, k), h) / std::sqrt(h2);
+            const bool shows = (v.highlit[k] != 0) & (h2 > 0.0f) & (n_h > 0.0f) &
+                               (glm::dot(vector_at(v.points.ns, k), wi) > 0.0f) &
+                               (glm::dot(vector_at(v.points.ng, k), wi) > 0.0f);
             d.highlight_[k] = shows ? n_h : 0.0f;
         }
     }
@@ -93,14 +88,14 @@ struct DirectLightLoops {
     [[gnu::always_inline]] static inline void reflect_run(DirectLight& d, const Vertices& v, std::size_t first) {
 #pragma GCC ivdep
         for (std::size_t k = first; k < first + kRun; ++k) {
-            const glm::vec3 wi = at(d.wi_, k);
-            const float n_l = glm::dot(at(v.points.ns, k), wi);
+            const glm::vec3 wi = vector_at(d.wi_, k);
+            const float n_l = glm::dot(vector_at(v.points.ns, k), wi);
             // Both terms need the light above the surface; a highlight on the dark side is a classic slip.
-            const bool above = (n_l > 0.0f) & (glm::dot(at(v.points.ng, k), wi) > 0.0f) & (v.lit[k] != 0);
-            glm::vec3 reflectance = at(v.diffuse, k) * n_l;
-            if constexpr (kHighlights) reflectance += at(v.specular, k) * d.highlight_[k];
-            const glm::vec3 light = where(above, at(d.light_, k) * reflectance);
-            put(light, d.light_, k);
+            const bool above = (n_l > 0.0f) & (glm::dot(vector_at(v.points.ng, k), wi) > 0.0f) & (v.lit[k] != 0);
+            glm::vec3 reflectance = vector_at(v.diffuse, k) * n_l;
+            if constexpr (kHighlights) reflectance += vector_at(v.specular, k) * d.highlight_[k];
+            const glm::vec3 light = where(above, vector_at(d.light_, k) * reflectance);
+            set_vector(d.light_, k, light);
             d.shows_[k] = (light.x != 0.0f) | (light.y != 0.0f) | (light.z != 0.0f) ? ~0u : 0u;
         }
     }
@@ -144,22 +139,22 @@ struct DirectLightLoops {
 #pragma GCC ivdep
         for (std::size_t k = first; k < first + kRun; ++k) {
             SurfacePoint s;
-            s.p = at(points.p, k);
-            s.ng = at(points.ng, k);
+            s.p = vector_at(points.p, k);
+            s.ng = vector_at(points.ng, k);
             s.error = points.error[k];
             s.error_from_afar = points.error_from_afar[k];
             if constexpr (kCast == Cast::from_light) {
-                put(direction_to(s, light.position), rays.direction, k);
+                set_vector(rays.direction, k, direction_to(s, light.position));
                 continue;
             }
             const glm::vec3 origin = spawn_origin(s, s.ng);
-            put(origin, rays.origin, k);
+            set_vector(rays.origin, k, origin);
             if constexpr (kCast == Cast::to_infinity) {
-                put(at(d.wi_, k), rays.direction, k);
+                set_vector(rays.direction, k, vector_at(d.wi_, k));
                 continue;
             }
-            const glm::vec3 direction = (kCast == Cast::to_point ? light.position : at(d.point_, k)) - origin;
-            put(direction, rays.direction, k);
+            const glm::vec3 direction = (kCast == Cast::to_point ? light.position : vector_at(d.point_, k)) - origin;
+            set_vector(rays.direction, k, direction);
             rays.t_max[k] = kCast == Cast::to_point    ? reach_of_point(light, origin, direction)
                             : kCast == Cast::to_sphere ? reach_of_sphere(light, origin, direction)
                                                        : reach_of_quad(light, origin, direction);

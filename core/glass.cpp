@@ -9,30 +9,24 @@ namespace glint {
 namespace {
 
 constexpr std::size_t kRun = kRunOfVertices;
-using Rows = float[3][kRayBatch];
-
-[[gnu::always_inline]] inline glm::vec3 at(const Rows& rows, std::size_t k) { return {rows[0][k], rows[1][k], rows[2][k]}; }
-[[gnu::always_inline]] inline void put(glm::vec3 v, Rows& rows, std::size_t k) {
-    rows[0][k] = v.x, rows[1][k] = v.y, rows[2][k] = v.z;
-}
 
 template <Fresnel kFresnel>
 [[gnu::always_inline]] inline void divide_run(Glass& g, const SurfacePoints& points, const Rows& outwards, std::size_t first) {
 #pragma GCC ivdep
     for (std::size_t k = first; k < first + kRun; ++k) {
         SurfacePoint s;
-        s.p = at(points.p, k);
-        s.ng = at(points.ng, k);
-        s.ns = at(points.ns, k);
+        s.p = vector_at(points.p, k);
+        s.ng = vector_at(points.ng, k);
+        s.ns = vector_at(points.ns, k);
         s.error = points.error[k];
-        const glm::vec3 wo = at(outwards, k);
+        const glm::vec3 wo = vector_at(outwards, k);
         const double eta = g.eta[k], cos_i = std::min(1.0, static_cast<double>(glm::dot(wo, s.ns)));
         g.reflected[k] = kFresnel == Fresnel::exact ? fresnel_dielectric(cos_i, eta) : fresnel_schlick(cos_i, eta);
         g.transmits[k] = transmitted_cos2(cos_i, eta) > 0.0 ? 1u : 0u;
-        put(refract(wo, s.ns, eta), g.refracted, k);
-        put(above(reflect(wo, s.ns), s), g.mirrored, k);
-        put(spawn_origin(s, s.ng), g.here, k);
-        put(spawn_origin(s, -s.ng), g.beyond, k);
+        set_vector(g.refracted, k, refract(wo, s.ns, eta));
+        set_vector(g.mirrored, k, above(reflect(wo, s.ns), s));
+        set_vector(g.here, k, spawn_origin(s, s.ng));
+        set_vector(g.beyond, k, spawn_origin(s, -s.ng));
     }
 }
 

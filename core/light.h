@@ -45,11 +45,6 @@ struct LightSample {
 // The point that u of the unit square chooses; u = (1/2, 1/2) gives the centre of points, quads and spreads.
 [[nodiscard]] LightSample sample_light(const Light& light, glm::vec3 receiver, glm::vec2 u) noexcept;
 
-// A point that shines alike in all directions, however far.
-[[nodiscard]] inline bool is_plain_point(const Light& light) {
-    return light.is_true_point() && (light.falloff == Light::Falloff::none || (light.cos_outer < -1.0f && !(light.range > 0.0f)));
-}
-
 // How far a shadow ray looks, in lengths of `direction`, which leads from `origin` to a sampled point of the light.
 // A light with area may be geometry of its own: the ray ends short of its surface by the rounding of the coordinates. A true
 // point has no surface: the ray ends that much past it, so that what touches the point shadows it (not surely so where it is

@@ -30,7 +30,7 @@ struct Aim {
     return {where(any, to / std::sqrt(distance2)), distance2, any};
 }
 
-// See is_plain_point().
+// A point that shines alike in all directions, however far.
 template <bool kPhysical>
 [[gnu::always_inline]] inline LightSample plain_point(const Light& light, glm::vec3 receiver) {
     LightSample s;

@@ -152,11 +152,13 @@ private:
             return Sampler::squares(plan_.sampler, lanes.pixel, lanes.index, hash(kCameraPath, i), n, u[0], u[1]);
         }
         for (std::size_t k = 0; k < n; ++k) {
-            const std::size_t lane = work_.met[k];
-            work_.pixels[k] = lanes.pixel[lane];
-            work_.indices[k] = lanes.index[lane];
-            work_.dimensions[k] = hash(lanes.path[lane], i);
+            work_.pixels[k] = lanes.pixel[work_.met[k]];
+            work_.indices[k] = lanes.index[work_.met[k]];
         }
+        if (wave == 0) {
+            return Sampler::squares(plan_.sampler, work_.pixels, work_.indices, hash(kCameraPath, i), n, u[0], u[1]);
+        }
+        for (std::size_t k = 0; k < n; ++k) work_.dimensions[k] = hash(lanes.path[work_.met[k]], i);
         Sampler::squares(plan_.sampler, work_.pixels, work_.indices, work_.dimensions, n, u[0], u[1]);
     }
 

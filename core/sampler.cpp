@@ -1,5 +1,6 @@
 #include "core/sampler.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "accel/isa.h"
@@ -189,6 +190,8 @@ std::uint32_t regular_cell(std::uint32_t index, std::uint32_t dimension) {
 
 void Sampler::squares(SamplerKind kind, const std::uint32_t* pixel, const std::uint32_t* index, const std::uint32_t* dimension,
                       std::size_t n, float* x, float* y) noexcept {
+    const auto joint = [](std::uint32_t d) { return joint_columns(d) != nullptr; };
+    if (kind == SamplerKind::joint && std::none_of(dimension, dimension + n, joint)) kind = SamplerKind::sobol;
     squares_of(kind, pixel, index, ByLane{dimension}, n, x, y);
 }
 

@@ -29,9 +29,9 @@ struct Spheres {
 }
 
 [[gnu::always_inline]] inline void put(const Rounded& s, SurfacePoints& points, std::size_t k) {
-    points.p[0][k] = s.p.x, points.p[1][k] = s.p.y, points.p[2][k] = s.p.z;
-    points.ng[0][k] = s.ng.x, points.ng[1][k] = s.ng.y, points.ng[2][k] = s.ng.z;
-    points.ns[0][k] = s.ns.x, points.ns[1][k] = s.ns.y, points.ns[2][k] = s.ns.z;
+    set_vector(points.p, k, s.p);
+    set_vector(points.ng, k, s.ng);
+    set_vector(points.ns, k, s.ns);
     points.error[k] = s.error;
     points.error_from_afar[k] = s.error_from_afar;
     points.outside[k] = s.outside ? 1u : 0u;

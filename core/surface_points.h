@@ -10,6 +10,15 @@
 
 namespace glint {
 
+// Three rows are the components of vectors.
+using Rows = float[3][kRayBatch];
+[[nodiscard, gnu::always_inline]] inline glm::vec3 vector_at(const Rows& rows, std::size_t k) {
+    return {rows[0][k], rows[1][k], rows[2][k]};
+}
+[[gnu::always_inline]] inline void set_vector(Rows& rows, std::size_t k, glm::vec3 v) {
+    rows[0][k] = v.x, rows[1][k] = v.y, rows[2][k] = v.z;
+}
+
 // The fields of SurfacePoint.
 struct alignas(64) SurfacePoints {
     float p[3][kRayBatch], ng[3][kRayBatch], ns[3][kRayBatch];
@@ -17,13 +26,7 @@ struct alignas(64) SurfacePoints {
     std::uint32_t outside[kRayBatch], material[kRayBatch];
 
     [[nodiscard]] SurfacePoint operator[](std::size_t k) const {
-        return {{p[0][k], p[1][k], p[2][k]},
-                {ng[0][k], ng[1][k], ng[2][k]},
-                {ns[0][k], ns[1][k], ns[2][k]},
-                outside[k] != 0,
-                error[k],
-                error_from_afar[k],
-                material[k]};
+        return {vector_at(p, k), vector_at(ng, k), vector_at(ns, k), outside[k] != 0, error[k], error_from_afar[k], material[k]};
     }
     void set(std::size_t k, const SurfacePoint& s) {
         for (int i = 0; i < 3; ++i) p[i][k] = s.p[i], ng[i][k] = s.ng[i], ns[i][k] = s.ns[i];

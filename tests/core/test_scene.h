@@ -19,6 +19,7 @@
 #include "core/renderer.h"
 #include "core/tile_kernels.h"
 #include "tests/long.h"
+#include "tests/materials.h"
 
 namespace glint::test {
 
@@ -26,17 +27,6 @@ inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double radians(double degrees) { return degrees * kPi / 180.0; }
 inline constexpr double degrees(double radians) { return radians * 180.0 / kPi; }
 
-// Materials start from nothing at all, so that each shows only what its name says.
-inline Material black() {
-    Material m;
-    m.diffuse = m.specular = glm::vec3(0.0f);
-    return m;
-}
-inline Material matte(float albedo) {
-    Material m = black();
-    m.diffuse = glm::vec3(albedo);
-    return m;
-}
 inline Material highlight(float strength, float shininess) {
     Material m = black();
     m.specular = glm::vec3(strength);
@@ -47,17 +37,6 @@ inline Material mirror(float albedo, float roughness = 0.0f) {
     Material m = black();
     m.mirror = glm::vec3(albedo);
     m.roughness = roughness;
-    return m;
-}
-inline Material glass(float ior) {
-    Material m = black();
-    m.glass = true;
-    m.ior = ior;
-    return m;
-}
-inline Material emitter(glm::vec3 radiance) {
-    Material m = black();
-    m.emission = radiance;
     return m;
 }
 inline Material emitter(float radiance) { return emitter(glm::vec3(radiance)); }

@@ -34,7 +34,7 @@ nav li { break-inside: avoid; padding: .16rem 0; display: flex; gap: .7em; align
 nav .id { flex: 0 0 5.6em; }
 section { border-top: 1px solid var(--line); margin-top: 3.2rem; padding-top: 1.6rem; }
 section > .id { margin: 0 0 .5rem; }
-.pair { display: grid; grid-template-columns: 1fr 1fr; gap: .4rem 1.25rem; margin: 1.2rem 0 0; }
+.pair { display: grid; grid-template-columns:minmax(0,1fr) minmax(0,1fr); gap: .4rem 1.25rem; margin: 1.2rem 0 0; }
 figure { margin: 0; }
 .scroll { overflow-x: auto; }
 img { display: block; max-width: 100%; image-rendering: pixelated; background: #777; }

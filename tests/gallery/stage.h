@@ -13,6 +13,7 @@
 #include "core/image.h"
 #include "core/renderer.h"
 #include "core/surface_point.h"
+#include "tests/materials.h"
 
 namespace glint::gallery {
 
@@ -85,28 +86,10 @@ inline RenderSettings centred() {
     return s;
 }
 
-inline Material black() {
-    Material m;
-    m.diffuse = m.specular = glm::vec3(0.0f);
-    return m;
-}
-inline Material matte(glm::vec3 albedo) {
-    Material m = black();
-    m.diffuse = albedo;
-    return m;
-}
-inline Material emitter(glm::vec3 radiance) {
-    Material m = black();
-    m.emission = radiance;
-    return m;
-}
-inline Material glass(float ior, float transmittance = 1.0f) {
-    Material m = black();
-    m.glass = true;
-    m.ior = ior;
-    m.transmittance = glm::vec3(transmittance);
-    return m;
-}
+using test::black;
+using test::emitter;
+using test::glass;
+using test::matte;
 
 inline void add_quad(SceneBuilder& b, glm::vec3 corner, glm::vec3 edge_a, glm::vec3 edge_b, std::uint32_t material) {
     const std::uint32_t i = b.add_vertex(corner);
