@@ -33,7 +33,7 @@ public:
         tree.nodes = top.nodes, tree.leaves = top.leaves, tree.depth = top.depth;
         for (std::size_t first = 0; first < tasks_.size(); first += kBatch) build_some(first, top, tree);
         std::ranges::copy(top.units, tree.units.begin());
-        if (top.leaf_area > 0.0) tree.leaf_extent = static_cast<float>(top.leaf_area_times_side / top.leaf_area);
+        if (tree.leaves > 0) tree.leaf_extent = static_cast<float>(top.leaf_sides / static_cast<double>(tree.leaves));
         return tree;
     }
 
@@ -72,8 +72,7 @@ private:
             size += part.units.size();
             if (size > kUnitMask) throw std::length_error("too many primitives for one BVH");
             top.node(tasks_[first + i].node).child[tasks_[first + i].child] = static_cast<BvhRef>(offsets[i]);
-            top.leaf_area += part.leaf_area;
-            top.leaf_area_times_side += part.leaf_area_times_side;
+            top.leaf_sides += part.leaf_sides;
             tree.nodes += part.nodes;
             tree.leaves += part.leaves;
             tree.depth = std::max(tree.depth, part.depth);

@@ -136,9 +136,7 @@ BvhRef BvhPart::append_leaf(const Geometry& geometry, std::span<PrimitiveId> ids
 void BvhPart::count_leaf_extent(const Box4& bounds) {
     alignas(16) float side[4];
     _mm_store_ps(side, _mm_sub_ps(bounds.hi, bounds.lo));
-    const double area = static_cast<double>(bounds.half_area());
-    leaf_area += area;
-    leaf_area_times_side += area * static_cast<double>(std::max(side[0], std::max(side[1], side[2])));
+    leaf_sides += static_cast<double>(std::max(side[0], std::max(side[1], side[2])));
 }
 
 void BvhPart::move_references(BvhRef by) {

@@ -16,7 +16,7 @@ struct BvhPart {
     BvhTree::Units units;
     std::size_t nodes = 0, leaves = 0;
     int depth = 0;
-    double leaf_area = 0.0, leaf_area_times_side = 0.0;  // sums over leaves, for BvhTree::leaf_extent
+    double leaf_sides = 0.0;  // the leaves' widest sides, summed, for BvhTree::leaf_extent
 
     BvhNode& node(std::size_t unit) { return *reinterpret_cast<BvhNode*>(units[unit].bytes); }
     // Throws std::length_error where references end.
@@ -26,7 +26,7 @@ struct BvhPart {
     void count_leaf_extent(const Box4& bounds);
     // Adds to the references of the nodes written, which then count from another first unit.
     void move_references(BvhRef by);
-    void clear() { units.clear(), nodes = leaves = 0, depth = 0, leaf_area = leaf_area_times_side = 0.0; }
+    void clear() { units.clear(), nodes = leaves = 0, depth = 0, leaf_sides = 0.0; }
 };
 
 // The children's bounds and their order for each octant; the children themselves are left 0.

@@ -57,6 +57,15 @@ TEST(BvhBuild, ACrowdInOneCellIsBuiltAsWellAsAlone) {
     EXPECT_LE(leaves, alone + alone / 4 + 3000);
 }
 
+// How fine a mesh is, is not decided by the floor that it stands on.
+TEST(BvhBuild, TheLeafExtentIsOfWhatThereIsMostOf) {
+    Geometry g = triangles_in_cube(5, 20000, glm::vec3(0.0f), 1.0f, 0.02f);
+    const float alone = build_bvh(g).leaf_extent;
+    EXPECT_GT(alone, 0.0f);
+    for (int i = 0; i < 4; ++i) g.boxes.push_back({glm::vec3(-50.0f), {50.0f, -2.0f, 50.0f}});
+    EXPECT_LT(build_bvh(g).leaf_extent, 2.0f * alone);
+}
+
 std::vector<BuildRef> random_refs(std::size_t count) {
     Random random(8);
     std::vector<BuildRef> refs;
