@@ -1,6 +1,7 @@
 #include "accel/bvh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "accel/instance_level.h"
@@ -21,8 +22,10 @@ void intersect_alone(const Ray& ray, float magnitude, const Geometry& geometry, 
 }
 
 BvhView BvhTree::view(const Geometry& geometry) const {
+    static std::atomic<std::uint64_t> trees{0};
     BvhView view;
     if (units.empty()) return view;
+    view.tree = ++trees;
     view.units = units.front().bytes;
     view.bytes = units.size() * sizeof(Unit);
     view.geometry = &geometry;

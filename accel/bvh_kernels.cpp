@@ -13,13 +13,25 @@ RayScalars scalars_of(const BvhView& bvh, const Ray& ray) noexcept {
 }
 
 void closest(const BvhView& bvh, const Ray& ray, Hit& best) noexcept {
-    traverse<false>(bvh, ray, scalars_of(bvh, ray), best, [](BvhRef) {});
+    BvhRef unused = 0;
+    traverse<false>(bvh, ray, scalars_of(bvh, ray), best, unused, [](BvhRef) {});
 }
+
+// The leaf that blocked this thread's last ray, if it was blocked, and the number of its tree: what blocks a ray often blocks
+// the next one too (Haines & Greenberg 1986, "The Light Buffer"). Any hit gives the same verdict, so the bits do not change.
+struct LastBlocker {
+    std::uint64_t tree = 0;
+    BvhRef leaf = 0;
+};
+constinit thread_local LastBlocker last_blocker;
 
 bool occluded(const BvhView& bvh, const Ray& ray) noexcept {
     Hit best;
     best.t = ray.t_max;
-    traverse<true>(bvh, ray, scalars_of(bvh, ray), best, [](BvhRef) {});
+    LastBlocker& last = last_blocker;
+    BvhRef blocker = last.tree == bvh.tree ? last.leaf : 0;
+    traverse<true>(bvh, ray, scalars_of(bvh, ray), best, blocker, [](BvhRef) {});
+    last = {bvh.tree, blocker};
     return best.primitive != kNoPrimitive;
 }
 
@@ -238,7 +250,8 @@ void closest_batch(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) noe
         best.t = hits.t[i];
         best.primitive = hits.primitive[i];
         const PrimitiveId before = best.primitive;
-        traverse<false>(bvh, ray, scalars, best, [](BvhRef) {});
+        BvhRef unused = 0;
+        traverse<false>(bvh, ray, scalars, best, unused, [](BvhRef) {});
         if (best.primitive == before) return;
         hits.t[i] = best.t;
         hits.u[i] = best.u;
@@ -250,11 +263,12 @@ void closest_batch(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) noe
 void occluded_batch(const BvhView& bvh, const RayBatch& rays, bool* result) noexcept {
     if (rays.order != RayOrder::divergent) return occluded_coherent(bvh, rays, result);
     if (bvh.bytes > kCached) return occluded_in_flight(bvh, rays, result);
+    BvhRef blocker = 0;
     for_each_prepared(bvh, rays, [&](int i, const Ray& ray, const RayScalars& scalars) {
         if (result[i]) return;
         Hit best;
         best.t = ray.t_max;
-        traverse<true>(bvh, ray, scalars, best, [](BvhRef) {});
+        traverse<true>(bvh, ray, scalars, best, blocker, [](BvhRef) {});
         result[i] = best.primitive != kNoPrimitive;
     });
 }
@@ -263,7 +277,8 @@ void count_closest(const BvhView& bvh, const Ray& ray, TraversalCounts& counts) 
     Hit best;
     best.t = ray.t_max;
     ++counts.rays;
-    traverse<false>(bvh, ray, scalars_of(bvh, ray), best, [&](BvhRef ref) {
+    BvhRef unused = 0;
+    traverse<false>(bvh, ray, scalars_of(bvh, ray), best, unused, [&](BvhRef ref) {
         if ((ref & kLeafBit) == 0) {
             ++counts.nodes;
             return;

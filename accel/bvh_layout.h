@@ -48,11 +48,12 @@ struct alignas(64) ConeBlock {
 struct BvhView {
     const std::byte* units = nullptr;  // the root node at unit 0; null for an empty tree
     std::size_t bytes = 0;             // of all units
+    std::uint64_t tree = 0;            // a number that no other tree has had
     const Geometry* geometry = nullptr;
     float lo[3] = {}, hi[3] = {};  // bounds of everything
     bool only_triangles = false;
     float magnitude = 0.0f;    // the largest absolute coordinate
-    float leaf_extent = 0.0f;  // mean of the leaves' widest sides, weighted by area: what a ray is likely to meet
+    float leaf_extent = 0.0f;  // mean of the leaves' widest sides: how fine the geometry is that has most of them
 
     // A reference to a node is the number of its unit: no bit above is set.
     [[nodiscard, gnu::always_inline]] const BvhNode& node(BvhRef r) const {

@@ -91,13 +91,22 @@ inline int sort_children(const BvhNode& node, unsigned mask, unsigned shift, std
 #endif
 }
 
-// Improves `best`. With `any`, ends at the first hit. `visit(ref)` hears of every node and leaf.
+// Improves `best`. With `any`, ends at the first hit; `blocker` is then the leaf to look at first (0: none, the root is no leaf)
+// and becomes the one that was hit. `visit(ref)` hears of every node and leaf.
 template <bool any, class Visit>
 [[gnu::always_inline]] inline void traverse(const BvhView& bvh, const Ray& ray, const RayScalars& scalars, Hit& best,
-                                            Visit visit) noexcept {
+                                            BvhRef& blocker, Visit visit) noexcept {
     if (!scalars.usable) return;
-    const SlabRay slabs(scalars);
     const LeafRay leaf_ray(ray, scalars, bvh);
+    const PrimitiveId before = best.primitive;
+    if constexpr (any) {
+        if (blocker != 0) {
+            meet_leaf<any>(blocker, leaf_ray, best);
+            if (best.primitive != before) return;
+            blocker = 0;
+        }
+    }
+    const SlabRay slabs(scalars);
     TraversalStack stack;
     int top = 0;
     Float8 limit = Float8::set(best.t);
@@ -123,9 +132,11 @@ template <bool any, class Visit>
             }
         }
         visit(at);
-        const PrimitiveId before = best.primitive;
         meet_leaf<any>(at, leaf_ray, best);
-        if (any && best.primitive != before) return;
+        if (any && best.primitive != before) {
+            blocker = at;
+            return;
+        }
         limit = Float8::set(best.t);
         do {
             if (top == 0) return;

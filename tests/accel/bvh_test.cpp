@@ -105,6 +105,28 @@ TEST(BvhTree, S_BVH_04_OneHugeTriangleCostsLessThanThreefold) {
     }
 }
 
+// The leaf that blocked the last ray is asked first: it must be one of this tree, and of one that still lives.
+TEST(BvhTree, WhatBlockedARayOfOneTreeBlocksNoneOfAnother) {
+    const auto with_ball_at = [](float x) {
+        auto g = std::make_shared<Geometry>();
+        for (int i = 0; i < 40; ++i) g->spheres.push_back({{x, 3.0f * static_cast<float>(i), 0.0f}, 1.0f});
+        return std::shared_ptr<const Geometry>(std::move(g));
+    };
+    const Ray ray{{0.0f, 0.0f, -5.0f}, {0.0f, 0.0f, 1.0f}, 10.0f};
+    for (const Isa isa : {Isa::baseline, Isa::avx2, Isa::avx512}) {
+        if (!supported(isa)) continue;
+        const Bvh hit(with_ball_at(0.0f), serial_for, isa), missed(with_ball_at(3.0f), serial_for, isa);
+        for (int i = 0; i < 4; ++i) {
+            EXPECT_TRUE(hit.occluded(ray));
+            EXPECT_TRUE(hit.occluded(ray));
+            EXPECT_FALSE(missed.occluded(ray));
+        }
+        for (int i = 0; i < 20; ++i) {  // likely in the same memory each time
+            EXPECT_EQ(Bvh(with_ball_at(i % 2 == 0 ? 0.0f : 3.0f), serial_for, isa).occluded(ray), i % 2 == 0);
+        }
+    }
+}
+
 TEST(BvhTree, S_BVH_05_WhatNoQueryCanAnswerIsInvalid) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const glm::vec3 a(0.0f), b(1.0f, 0.0f, 0.0f), c(0.0f, 1.0f, 0.0f);
