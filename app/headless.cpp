@@ -127,6 +127,8 @@ nlohmann::json stats(const Job& job, const Options& o, const Progress& p, double
             {"non_finite_samples", r.non_finite},
             {"depth_cut_branches", r.depth_cut},
             {"depth_cut_weight", r.depth_cut_weight},
+            {"weight_cut_branches", r.weight_cut},
+            {"weight_cut_weight", r.weight_cut_weight},
             {"relative_standard_error", error},
             {"isa", name_of(isa_in_use())}};
 }

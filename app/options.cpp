@@ -72,6 +72,13 @@ public:
              [this](auto n, auto v) { o_.settings.sampler = static_cast<SamplerKind>(choice(n, v, kSamplerNames)); });
         text("--depth", "N", "bounces after the camera ray; default 8",
              [this](auto n, auto v) { o_.settings.depth = number(n, v, 0, 100000, "a number of bounces (0 to 100000)"); });
+        text("--cutoff", "X", "branches of a weight up to X are not followed; default 0. Darkens by at most X times their light",
+             [this](auto n, auto v) { o_.settings.cutoff = number(n, v, 0.0f, 1.0f, "a weight (0 to 1)"); });
+        text("--light-samples", "N", "points on each area light at every surface; default 1",
+             [this](auto n, auto v) { o_.settings.light_samples = number(n, v, 1, 4096, "a number of points (1 to 4096)"); });
+        text("--glass", "both|one", "rays that go on from glass: both, or one of them by chance", [this](auto n, auto v) {
+            o_.settings.glass = static_cast<GlassBranches>(choice(n, v, std::array<std::string_view, 2>{"both", "one"}));
+        });
         length("--light-size", "half side of the square around point lights, scene units",
                [this](float x) { o_.settings.light_size = x; });
         length("--aperture", "lens radius, scene units", [this](float x) { o_.aperture = x; });

@@ -1,6 +1,6 @@
 // Where light may have come from at a mirror or at glass: the rays that one branch leaves behind at a surface (Whitted 1980).
 // Knows no accelerator and no light source. Invariant: a ray is pushed only with a weight above 0 and within the depth
-// limit; what the limit cuts off is counted; a part that is compiled out costs not even a random number.
+// limit; what the limits cut off is counted; a part that is compiled out costs not even a random number.
 #pragma once
 
 #include <algorithm>
@@ -136,7 +136,13 @@ private:
                 std::uint64_t& counter) {
         const glm::vec3 throughput = from.throughput * weight;
         const float largest = std::max(throughput.x, std::max(throughput.y, throughput.z));
-        if (!(largest > 0.0f)) return false;
+        if (!(largest > plan_.cutoff)) {
+            if (largest > 0.0f) {
+                ++from.work.counts.weight_cut;
+                from.work.counts.weight_cut_weight += static_cast<double>(largest);
+            }
+            return false;
+        }
         if (from.bounces >= plan_.depth) {
             ++from.work.counts.depth_cut;
             from.work.counts.depth_cut_weight += static_cast<double>(largest);
@@ -176,8 +182,14 @@ private:
         Workspace& work = from.work;
         const Glass& g = work.glass;
         const MediumStack here = work.media[from.lane];
-        const double reflected = g.reflected[k];
-        if (plan_.refractions && g.transmits[k] != 0) {
+        double reflected = g.reflected[k];
+        if (plan_.one_branch && g.transmits[k] != 0 && reflected > 0.0) {
+            // Chosen with the probability that is its weight: what is left of that is 1.
+            const Sampler sampler = work.lanes.sampler(plan_.sampler, from.lane);
+            const double u = static_cast<double>(sampler.interval(hash(from.path, dimension::glass_branch)));
+            reflected = u < reflected ? 1.0 : 0.0;
+        }
+        if (plan_.refractions && g.transmits[k] != 0 && reflected < 1.0) {
             const glm::vec3 weight = m.transmittance * static_cast<float>(1.0 - reflected);
             if (follow(from, vector_at(g.beyond, k), vector_at(g.refracted, k), weight, 1, work.counts.refraction)) {
                 work.media[from.to] = work.media_beyond[k];

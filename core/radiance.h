@@ -61,7 +61,7 @@ public:
             work_.rays.order = order_of_wave(wave, plan_.camera.lens_radius > 0.0f, (kParts & kernel_part::fuzzy) != 0);
             accelerator_.closest_hits(work_.rays, work_.hits);
             meet_surfaces();
-            for (std::uint32_t i = 0; i < plan_.lights.size() && work_.vertices.any_lit; ++i) add_light(i, wave);
+            for (std::uint32_t i = 0; i < plan_.lights.size() && work_.vertices.any_lit; ++i) add_points_of_light(i, wave);
             collect();
             go_on(result);
         }
@@ -122,11 +122,17 @@ private:
         }
     }
 
-    // Adds light i to all vertices that it reaches, with one shadow ray each and only where it would show.
-    void add_light(std::uint32_t i, int wave) {
+    // Adds light i to all vertices that it reaches: from as many of its points as are asked for, where it has more than one.
+    void add_points_of_light(std::uint32_t i, int wave) {
+        const int points = plan_.lights[i].has_area() ? plan_.light_samples : 1;
+        for (int point = 0; point < points; ++point) add_light(i, point, wave);
+    }
+
+    // With one shadow ray a vertex and only where it would show.
+    void add_light(std::uint32_t i, int point, int wave) {
         const Light& light = plan_.lights[i];
         DirectLight& direct = work_.direct_light;
-        if (light.has_area()) choose_points(i, wave);
+        if (light.has_area()) choose_points(i, point, wave);
         direct.reflect(light, work_.vertices);
         if (!plan_.shadows) return direct.add(work_.vertices);
         const bool at_light = work_.shadow_origins.at_light(i);
@@ -139,8 +145,9 @@ private:
         direct.add(work_.blocked, work_.vertices);
     }
 
-    // Where on light i each vertex looks: at its middle without soft shadows.
-    void choose_points(std::uint32_t i, int wave) {
+    // Where on light i each vertex looks for its point number `point`: at its middle without soft shadows. All points of all
+    // samples of a pixel are one sequence, so that they are spread evenly together.
+    void choose_points(std::uint32_t i, int point, int wave) {
         const Lanes& lanes = work_.lanes;
         const std::size_t n = work_.vertices.count;
         auto& u = work_.direct_light.u;
@@ -148,12 +155,13 @@ private:
             for (auto& row : u) std::fill_n(row, n, 0.5f);
             return;
         }
-        if (wave == 0 && all_met()) {
+        const auto per_sample = static_cast<std::uint32_t>(plan_.light_samples);
+        if (wave == 0 && all_met() && per_sample == 1) {
             return Sampler::squares(plan_.sampler, lanes.pixel, lanes.index, hash(kCameraPath, i), n, u[0], u[1]);
         }
         for (std::size_t k = 0; k < n; ++k) {
             work_.pixels[k] = lanes.pixel[work_.met[k]];
-            work_.indices[k] = lanes.index[work_.met[k]];
+            work_.indices[k] = lanes.index[work_.met[k]] * per_sample + static_cast<std::uint32_t>(point);
         }
         if (wave == 0) {
             return Sampler::squares(plan_.sampler, work_.pixels, work_.indices, hash(kCameraPath, i), n, u[0], u[1]);

@@ -10,6 +10,8 @@ struct RayCounts {
     std::uint64_t non_finite = 0;   // samples rejected because they were NaN or infinite
     std::uint64_t depth_cut = 0;    // branches that the depth limit cut off
     double depth_cut_weight = 0.0;  // the sum of their weights (largest channel)
+    std::uint64_t weight_cut = 0;   // branches that were not followed for their small weight
+    double weight_cut_weight = 0.0;
 
     [[nodiscard]] std::uint64_t total() const { return camera + shadow + reflection + refraction; }
     RayCounts& operator+=(const RayCounts& o) {
@@ -20,6 +22,8 @@ struct RayCounts {
         non_finite += o.non_finite;
         depth_cut += o.depth_cut;
         depth_cut_weight += o.depth_cut_weight;
+        weight_cut += o.weight_cut;
+        weight_cut_weight += o.weight_cut_weight;
         return *this;
     }
 };

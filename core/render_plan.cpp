@@ -108,6 +108,7 @@ RenderPlan plan_render(const Scene& scene, const RenderSettings& settings, const
     const FeatureSet own = features_of(scene);
     RenderPlan plan;
     plan.depth = settings.depth;
+    plan.cutoff = settings.cutoff;
     plan.jitter = wants(Feature::aa);
     plan.highlights = wants(Feature::specular);
     plan.shadows = wants(Feature::shadows);
@@ -143,6 +144,10 @@ RenderPlan plan_render(const Scene& scene, const RenderSettings& settings, const
     std::erase_if(plan.lights, [](const Light& l) { return l.emission == glm::vec3(0.0f); });
     if (std::any_of(plan.lights.begin(), plan.lights.end(), [](const Light& l) { return l.has_area(); }) && soft) {
         plan.kernel |= kernel_part::soft;
+        plan.light_samples = settings.light_samples;
+        for (Light& light : plan.lights) {
+            if (light.has_area()) light.emission /= static_cast<float>(plan.light_samples);
+        }
     }
 
     // At depth 0 too: the integrator counts what the limit cuts off.
@@ -159,6 +164,7 @@ RenderPlan plan_render(const Scene& scene, const RenderSettings& settings, const
     if ((plan.reflections || plan.refractions) && has_glass(scene)) {
         plan.kernel |= kernel_part::glass;
         plan.medium = medium_at(scene, camera.eye);
+        plan.one_branch = settings.glass == GlassBranches::one && plan.reflections && plan.refractions;
     }
     return plan;
 }

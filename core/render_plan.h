@@ -23,6 +23,9 @@ struct RenderPlan {
     float default_fuzz = 0.0f;  // fuzz radius of mirrors without one of their own
     float forced_fuzz = -1.0f;  // fuzz radius of every mirror; negative = not forced
     int depth = 8;
+    float cutoff = 0.0f;      // see RenderSettings
+    int light_samples = 1;    // the lights' emission is already divided by it
+    bool one_branch = false;  // at glass, and only where both rays are wanted
     bool jitter = true, highlights = true, shadows = true, reflections = true, refractions = true;
     bool background_is_color = false;
     Fresnel fresnel = Fresnel::exact;
@@ -35,7 +38,7 @@ struct RenderPlan {
     [[nodiscard]] bool has(unsigned part) const { return (kernel & part) != 0; }
     // Whether two samples of a pixel can differ. If not, one says it all.
     [[nodiscard]] bool stochastic() const {
-        return jitter || camera.lens_radius > 0.0f || has(kernel_part::soft) || has(kernel_part::fuzzy);
+        return jitter || camera.lens_radius > 0.0f || has(kernel_part::soft) || has(kernel_part::fuzzy) || one_branch;
     }
 };
 

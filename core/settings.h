@@ -31,6 +31,8 @@ struct FeatureSet {
 };
 
 enum class Fresnel { exact, schlick };
+// Which rays go on from glass: the mirrored and the refracted one, or one of them by chance (then no path divides).
+enum class GlassBranches { both, one };
 enum class SamplerKind { sobol, jittered, random, regular, joint };
 constexpr std::array<std::string_view, 5> kSamplerNames{"sobol", "jittered", "random", "regular", "joint"};
 enum class Background { scene, color, environment };
@@ -42,6 +44,11 @@ struct RenderSettings {
     SamplerKind sampler = SamplerKind::sobol;
     Background background = Background::scene;
     int depth = 8;  // bounces after the camera ray
+    // Branches whose weight (its largest channel) is not above this are not followed (Hall & Greenberg 1983). Biased: each one
+    // darkens its sample by at most cutoff times the light along it.
+    float cutoff = 0.0f;
+    int light_samples = 1;  // points on each area light at every vertex
+    GlassBranches glass = GlassBranches::both;
     std::uint64_t seed = 0;
     std::optional<float> light_size;  // half side of the square put around point lights, scene units
     std::optional<float> roughness;   // fuzz radius of every mirror
