@@ -27,20 +27,37 @@ struct Job {
 };
 
 // Every second bit of a number, the lowest first, closed up.
-unsigned even_bits(unsigned m) {
+constexpr unsigned even_bits(unsigned m) {
     unsigned x = 0;
     for (unsigned bit = 0; m >> (2 * bit) != 0; ++bit) x |= ((m >> (2 * bit)) & 1u) << bit;
     return x;
 }
+
+struct Cell {
+    std::uint8_t x, y;
+};
+// One tile's.
+constexpr std::array<Cell, kTileSize* kTileSize> kZCurve = [] {
+    std::array<Cell, kTileSize * kTileSize> cells{};
+    for (unsigned m = 0; m < cells.size(); ++m) {
+        cells[m] = {static_cast<std::uint8_t>(even_bits(m)), static_cast<std::uint8_t>(even_bits(m >> 1))};
+    }
+    return cells;
+}();
 
 // Calls visit(x, y) for each cell of a width x height grid along the Z curve (Morton 1966): any 4^n cells in a row from a
 // multiple of 4^n on are a square, whose rays go about the same way.
 template <class Visit>
 void along_z_curve(int width, int height, Visit&& visit) {
     const unsigned side = std::bit_ceil(static_cast<unsigned>(std::max({1, width, height})));
-    for (unsigned m = 0; m < side * side; ++m) {
-        const int x = static_cast<int>(even_bits(m)), y = static_cast<int>(even_bits(m >> 1));
-        if (x < width && y < height) visit(x, y);
+    constexpr unsigned kCells = kZCurve.size();
+    const unsigned tiles = (side * side + kCells - 1) / kCells;
+    for (unsigned tile = 0; tile < tiles; ++tile) {
+        const int left = kTileSize * static_cast<int>(even_bits(tile)), top = kTileSize * static_cast<int>(even_bits(tile >> 1));
+        for (const Cell cell : std::span(kZCurve).first(std::min(kCells, side * side))) {
+            const int x = left + cell.x, y = top + cell.y;
+            if (x < width && y < height) visit(x, y);
+        }
     }
 }
 
@@ -58,7 +75,7 @@ public:
 
     // Samples [first, last) of a pixel.
     void add(std::size_t cell, int x, int y, int first, int last) {
-        const std::uint32_t pixel = pixel_sampler(in_, x, y).pixel();
+        const std::uint32_t pixel = random_ ? pixel_sampler(in_, x, y).pixel() : 0;
         for (int k = first; k < last && !stopped_;) {
             const auto n = std::min(static_cast<std::size_t>(last - k), kRayBatch - count_);
             std::fill_n(cells_ + count_, n, static_cast<std::uint32_t>(cell));
@@ -115,6 +132,7 @@ private:
     Workspace& work_;
     Integrator<A, kParts> integrator_;
     Take take_;
+    const bool random_ = in_.plan.stochastic();  // or nobody asks for a random number
     bool stopped_ = false;
     std::size_t count_ = 0;
     std::uint32_t cells_[kRayBatch];

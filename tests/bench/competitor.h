@@ -32,7 +32,7 @@ struct Block {
 
 class Competitor {
 public:
-    enum class Role { embree_single, embree_robust, embree_wide, bvh_single, bvh_batch, grid };
+    enum class Role { embree_single, embree_robust, embree_wide, bvh_single, bvh_batch, bvh_fast_tree, grid };
 
     Competitor(std::string name, Role role) : name_(std::move(name)), role_(role) {}
     virtual ~Competitor() = default;
@@ -58,7 +58,8 @@ using Competitors = std::vector<std::unique_ptr<Competitor>>;
 [[nodiscard]] std::vector<Block> make_blocks(const RaySet& set, Answers& answers, std::size_t first, std::size_t last);
 void trace(const Competitor& competitor, const RaySet& set, Answers& answers);  // all of it, on this thread
 
-[[nodiscard]] Competitors glint_competitors(std::shared_ptr<const Bvh> bvh, std::shared_ptr<const UniformGrid> grid);
+[[nodiscard]] Competitors glint_competitors(std::shared_ptr<const Bvh> bvh, std::shared_ptr<const Bvh> fast_tree,
+                                            std::shared_ptr<const UniformGrid> grid);
 [[nodiscard]] Competitors embree_competitors(const Geometry& geometry);
 
 }  // namespace glint::bench

@@ -28,8 +28,8 @@ private:
 
 class InBatches : public Competitor {
 public:
-    InBatches(std::string name, std::shared_ptr<const Bvh> bvh)
-        : Competitor(std::move(name), Role::bvh_batch), bvh_(std::move(bvh)) {}
+    InBatches(std::string name, Role role, std::shared_ptr<const Bvh> bvh)
+        : Competitor(std::move(name), role), bvh_(std::move(bvh)) {}
 
     void closest(RayOrder, std::span<Block> blocks) const override {
         for (const Block& block : blocks) bvh_->closest_hits(block.batch, block.hits);
@@ -64,11 +64,13 @@ void trace(const Competitor& competitor, const RaySet& set, Answers& answers) {
     competitor.end_thread();
 }
 
-Competitors glint_competitors(std::shared_ptr<const Bvh> bvh, std::shared_ptr<const UniformGrid> grid) {
+Competitors glint_competitors(std::shared_ptr<const Bvh> bvh, std::shared_ptr<const Bvh> fast_tree,
+                              std::shared_ptr<const UniformGrid> grid) {
     using Role = Competitor::Role;
     Competitors list;
     list.push_back(std::make_unique<OneByOne<Bvh>>("glint bvh, one ray", Role::bvh_single, bvh));
-    list.push_back(std::make_unique<InBatches>("glint bvh, batches", std::move(bvh)));
+    list.push_back(std::make_unique<InBatches>("glint bvh, batches", Role::bvh_batch, std::move(bvh)));
+    list.push_back(std::make_unique<InBatches>("glint bvh, fast tree, batches", Role::bvh_fast_tree, std::move(fast_tree)));
     if (grid) list.push_back(std::make_unique<OneByOne<UniformGrid>>("glint grid, one ray", Role::grid, std::move(grid)));
     return list;
 }

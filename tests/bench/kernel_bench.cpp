@@ -54,9 +54,10 @@ SceneResult measure(const BenchScene& scene, const Arguments& arguments) {
     if (!arguments.no_build) result.builds = race_builds(scene.geometry, !arguments.no_grid, arguments.build_rounds);
 
     const auto bvh = std::make_shared<const Bvh>(scene.geometry);
+    const auto fast_tree = std::make_shared<const Bvh>(scene.geometry, serial_for, isa_in_use(), BuildQuality::fast);
     const auto grid = arguments.no_grid ? nullptr : std::make_shared<const UniformGrid>(scene.geometry);
     Competitors competitors = embree_competitors(*scene.geometry);
-    for (auto& c : glint_competitors(bvh, grid)) competitors.push_back(std::move(c));
+    for (auto& c : glint_competitors(bvh, fast_tree, grid)) competitors.push_back(std::move(c));
     const BruteForce brute_force(scene.geometry);
     for (const RaySet& set : make_ray_sets(scene, *bvh, arguments.thin)) {
         if (!arguments.sets.empty() && !is_named(arguments.sets, set.name)) continue;

@@ -113,10 +113,12 @@ ParallelFor parallel_for_of(int threads) {
     };
 }
 
-Builder bvh_builder(const std::shared_ptr<const Geometry>& geometry, int threads) {
-    return {{"glint bvh", threads, {}, 0}, [geometry, threads](double& seconds) {
+Builder bvh_builder(const std::shared_ptr<const Geometry>& geometry, int threads, BuildQuality quality) {
+    const std::string name = quality == BuildQuality::fast ? "glint bvh, fast" : "glint bvh";
+    return {{name, threads, {}, 0}, [geometry, threads, quality](double& seconds) {
                 std::size_t bytes = 0;
-                seconds = seconds_of([&] { bytes = Bvh(geometry, parallel_for_of(threads)).memory_bytes(); });
+                seconds =
+                    seconds_of([&] { bytes = Bvh(geometry, parallel_for_of(threads), isa_in_use(), quality).memory_bytes(); });
                 return bytes;
             }};
 }
@@ -157,7 +159,8 @@ std::vector<Rates> race(const Competitors& competitors, const RaySet& set, int t
 std::vector<Build> race_builds(const std::shared_ptr<const Geometry>& geometry, bool with_grid, int rounds) {
     const auto input = std::make_shared<const EmbreeInput>(*geometry);
     std::vector<Builder> builders;
-    for (int threads : {1, 2}) builders.push_back(bvh_builder(geometry, threads));
+    for (int threads : {1, 2}) builders.push_back(bvh_builder(geometry, threads, BuildQuality::quality));
+    for (int threads : {1, 2}) builders.push_back(bvh_builder(geometry, threads, BuildQuality::fast));
     if (with_grid) builders.push_back(grid_builder(geometry));
     for (int threads : {1, 2}) {
         builders.push_back(embree_builder("embree low", input, {RTC_BUILD_QUALITY_LOW, false, false, threads}));

@@ -39,6 +39,17 @@ std::string build_table(const SceneResult& result) {
         text += fmt::format("| {} | {} | {:.3f} [{:.3f}–{:.3f}] | {:.1f} |\n", b.name, b.threads, s.median, s.low, s.high,
                             static_cast<double>(b.bytes) / primitives);
     }
+    const auto of = [&](std::string_view name, int threads) {
+        return std::find_if(result.builds.begin(), result.builds.end(),
+                            [&](const Build& b) { return b.name == name && b.threads == threads; });
+    };
+    text += "\n| seconds, ratios | 1 thread | 2 threads |\n| --- | --- | --- |\n";
+    constexpr std::string_view kPairs[][2] = {{"glint bvh", "embree medium"}, {"glint bvh, fast", "embree low"}};
+    for (const auto& [ours, theirs] : kPairs) {
+        text +=
+            fmt::format("| {} : {} | {} | {} |\n", ours, theirs, with_spread(ratio(of(ours, 1)->seconds, of(theirs, 1)->seconds)),
+                        with_spread(ratio(of(ours, 2)->seconds, of(theirs, 2)->seconds)));
+    }
     return text;
 }
 
@@ -61,16 +72,17 @@ std::string rate_table(const SceneResult& result, std::size_t t) {
 std::string ratio_table(const SceneResult& result, std::size_t t) {
     std::string text = fmt::format(
         "| ratios, {} | bvh, one ray : embree 1 | bvh, batches : embree 1 | bvh, batches : best wide | best wide | grid : embree "
-        "1 |\n"
-        "| --- | --- | --- | --- | --- | --- |\n",
+        "1 | fast tree : tree |\n"
+        "| --- | --- | --- | --- | --- | --- | --- |\n",
         plural(result.threads[t]));
     for (const SetResult& set : result.sets) {
         const std::vector<Rates>& rates = set.by_threads[t];
         const Rates *single = of_role(rates, Role::embree_single), *wide = best_wide(rates);
         const Rates *one = of_role(rates, Role::bvh_single), *batch = of_role(rates, Role::bvh_batch);
         text +=
-            fmt::format("| {} | {} | {} | {} | {} | {} |\n", set.check.set, ratio_cell(one, single), ratio_cell(batch, single),
-                        ratio_cell(batch, wide), wide ? wide->name : "–", ratio_cell(of_role(rates, Role::grid), single));
+            fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", set.check.set, ratio_cell(one, single),
+                        ratio_cell(batch, single), ratio_cell(batch, wide), wide ? wide->name : "–",
+                        ratio_cell(of_role(rates, Role::grid), single), ratio_cell(of_role(rates, Role::bvh_fast_tree), batch));
     }
     return text;
 }
