@@ -16,12 +16,11 @@
 #include <fmt/format.h>
 
 #include "core/display_bytes.h"
+#include "core/exr.h"
+#include "core/rgbe.h"
 
 namespace glint {
 namespace {
-
-// The largest picture that is read back: 2^28 pixels, as for rendering.
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 
 std::uint32_t crc32(const std::string& bytes) {
     std::uint32_t crc = 0xffffffffu;
@@ -40,16 +39,19 @@ std::string png_chunk(const std::string& type, const std::string& data) {
     return big_endian(static_cast<std::uint32_t>(data.size())) + type + data + big_endian(crc32(type + data));
 }
 
-Image read_pfm(std::istream& in, const std::string& path) {
+Image read_pfm(std::istream& in, std::size_t bytes, const std::string& path) {
     std::string magic;
     std::int64_t width = 0, height = 0;
     double scale = 0.0;
     in >> magic >> width >> height >> scale;
     in.get();
-    if (!in || (magic != "PF" && magic != "Pf") || width < 1 || height < 1 || width > kMaxPixels / height || scale == 0.0) {
+    if (!in || (magic != "PF" && magic != "Pf") || width < 1 || height < 1 || width > kMaxImagePixels / height || scale == 0.0) {
         throw ImageError(path + ": not a PFM picture");
     }
     const std::size_t channels = magic == "PF" ? 3 : 1;
+    if (bytes / (sizeof(float) * channels) < static_cast<std::size_t>(width * height)) {
+        throw ImageError(path + ": the picture is cut short");
+    }
     Image image{static_cast<int>(width), static_cast<int>(height), {}};
     image.pixels.resize(static_cast<std::size_t>(width * height));
     std::vector<float> row(static_cast<std::size_t>(width) * channels);
@@ -146,7 +148,7 @@ void write_file_atomically(const std::filesystem::path& path, const std::string&
     }
 }
 
-Image read_image(const std::filesystem::path& path) {
+StoredImage read_stored_image(const std::filesystem::path& path) {
     const std::string name = path.string();
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) throw ImageError(name + ": no such picture");
@@ -154,14 +156,16 @@ Image read_image(const std::filesystem::path& path) {
     std::stringstream contents;
     contents << in.rdbuf();
     const std::string bytes = contents.str();
-    if (bytes.starts_with("PF") || bytes.starts_with("Pf")) return read_pfm(contents, name);
+    if (bytes.starts_with("PF") || bytes.starts_with("Pf")) return {read_pfm(contents, bytes.size(), name), true};
+    if (is_rgbe(bytes)) return {decode_rgbe(bytes, name), true};
+    if (is_exr(bytes)) return {decode_exr(bytes, name), true};
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     int width = 0, height = 0, channels = 0;
     if (bytes.size() > std::size_t{1} << 30 ||
         !stbi_info_from_memory(data, static_cast<int>(bytes.size()), &width, &height, &channels)) {
-        throw ImageError(name + ": not a PNG, JPEG or PFM picture");
+        throw ImageError(name + ": not a PNG, JPEG, PFM, Radiance or OpenEXR picture");
     }
-    if (std::int64_t{width} * height > kMaxPixels) throw ImageError(name + ": the picture is too large");
+    if (std::int64_t{width} * height > kMaxImagePixels) throw ImageError(name + ": the picture is too large");
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_memory(data, static_cast<int>(bytes.size()), &width, &height, &channels, 3), &stbi_image_free);
     if (pixels == nullptr) throw ImageError(name + ": the picture is broken");
@@ -171,8 +175,10 @@ Image read_image(const std::filesystem::path& path) {
         const stbi_uc* p = pixels.get() + 3 * i;
         image.pixels[i] = glm::vec3(p[0], p[1], p[2]) / 255.0f;
     }
-    return image;
+    return {std::move(image), false};
 }
+
+Image read_image(const std::filesystem::path& path) { return read_stored_image(path).image; }
 
 ImageDifference difference(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height) {

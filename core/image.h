@@ -1,4 +1,4 @@
-// Pictures: linear float images, the only transfer to display bytes, PNG and PFM files, error metrics.
+// Pictures: linear float images, the only transfer to display bytes, PNG, JPEG and PFM files (rgbe.h and exr.h hold the rest).
 // Rows run from the top down. Knows nothing of how a picture came to be.
 #pragma once
 
@@ -12,6 +12,9 @@
 #include "core/settings.h"
 
 namespace glint {
+
+// The largest picture that is read back: as for rendering.
+inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
 
 struct Image {
     int width = 0, height = 0;
@@ -48,7 +51,13 @@ public:
 // Written under a temporary name beside `path`, then renamed: there is never half a file. Throws ImageError.
 void write_file_atomically(const std::filesystem::path& path, const std::string& bytes);
 
-// PNG or JPEG bytes as stored (no transfer undone), or PFM; chosen by content. Bytes become byte/255. Throws ImageError.
+struct StoredImage {
+    Image image;
+    bool radiance = false;  // linear radiance (PFM, HDR, EXR); otherwise bytes/255 as a display gets them (PNG, JPEG)
+};
+// PNG or JPEG bytes as stored (no transfer undone), PFM, Radiance HDR or OpenEXR; chosen by content. Throws ImageError. A small
+// file that claims to be a large picture is refused before memory is taken for it.
+[[nodiscard]] StoredImage read_stored_image(const std::filesystem::path& path);
 [[nodiscard]] Image read_image(const std::filesystem::path& path);
 
 struct ImageDifference {
