@@ -21,7 +21,7 @@ protected:
 };
 
 TEST_F(LittleMemory, ForTheSceneRefusesIt) {
-    for (const int n : {20, 40})
+    for (const int n : {32, 40})
         expect_refused("render builtin:knot,n=10000000 -o x.png", 3, "n=10000000: not enough memory for this scene",
                        megabytes(n));
     expect_refused("info builtin:soup,n=10000000", 3, "not enough memory for this scene", megabytes(100));
