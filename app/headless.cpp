@@ -13,6 +13,8 @@
 #include <nlohmann/json.hpp>
 
 #include "accel/isa.h"
+#include "app/compare.h"
+#include "app/picture_format.h"
 #include "core/accelerator_cache.h"
 #include "core/image.h"
 #include "core/renderer.h"
@@ -53,14 +55,6 @@ std::string filled_in(std::string name, const Job& job) {
         std::error_code ignored;
         if (!std::filesystem::exists(numbered, ignored)) return numbered;
     }
-}
-
-enum class Format { png, pfm };
-
-Format format_of(const std::string& output) {
-    if (output == "-" || output.ends_with(".png") || output.ends_with(".PNG")) return Format::png;
-    if (output.ends_with(".pfm") || output.ends_with(".PFM")) return Format::pfm;
-    throw UsageError(fmt::format("-o {}: the ending must be .png or .pfm", output));
 }
 
 void apply_crop(Frame& frame, const Options& o) {
@@ -133,6 +127,12 @@ nlohmann::json stats(const Job& job, const Options& o, const Progress& p, double
             {"isa", name_of(isa_in_use())}};
 }
 
+void print_verdict(const Reference::Verdict& verdict, const Options& o) {
+    if (o.quiet) return;
+    fmt::print(stderr, "{} {:.6g} against {}: {}\n", kMetricNames[static_cast<std::size_t>(o.metric)], verdict.value, o.reference,
+               verdict.within ? "within the threshold" : "not within the threshold");
+}
+
 }  // namespace
 
 void print_warnings(const Scene& scene, const Options& options) {
@@ -145,13 +145,15 @@ void print_warnings(const Scene& scene, const Options& options) {
 }
 
 int run_render(const Options& o) {
-    const Format format = format_of(o.output);
+    const PictureFormat format = format_of(o.output);
     const auto start = std::chrono::steady_clock::now();
     const Job job = prepare_job(o, o.arguments.empty() ? default_scene() : o.arguments.front());
     const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     print_warnings(*job.scene, o);
     Frame frame{job.scene, nullptr, job.camera, job.settings, job.width, job.height, 0, 0, job.width, job.height, job.spp};
     apply_crop(frame, o);
+    std::optional<Reference> reference;
+    if (!o.reference.empty()) reference.emplace(o, frame.x1 - frame.x0, frame.y1 - frame.y0);
 
     std::signal(SIGINT, request_stop);
     std::signal(SIGTERM, request_stop);
@@ -173,8 +175,7 @@ int run_render(const Options& o) {
 
     Image image;
     renderer.resolve(image);
-    const std::string bytes =
-        format == Format::pfm ? encode_pfm(image) : encode_png(to_display(image, job.display), job.display.transfer);
+    const std::string bytes = encode(image, format, job.display);
     const bool to_stdout = o.output == "-";
     if (to_stdout) {
         if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0) {
@@ -184,23 +185,24 @@ int run_render(const Options& o) {
         write_file_atomically(filled_in(o.output, job), bytes);
     }
     const std::string_view stopped_by = stop_requested ? "signal" : p.finished ? "spp" : "time";
+    nlohmann::json compared;
+    Reference::Verdict verdict{true, 0.0};
+    if (reference) {
+        verdict = reference->check(image, job.display, compared);
+        print_verdict(verdict, o);
+    }
     if (o.stats_json) {
-        const auto json = stats(job, o, p, cache.build_seconds(job.accelerator), load_seconds, accelerator_bytes,
-                                renderer.relative_standard_error(), stopped_by);
+        auto json = stats(job, o, p, cache.build_seconds(job.accelerator), load_seconds, accelerator_bytes,
+                          renderer.relative_standard_error(), stopped_by);
+        json.update(compared);
         (to_stdout ? std::cerr : std::cout) << json.dump(2) << "\n";
     }
     if (p.rays.non_finite > 0 && !o.quiet) {
         fmt::print(stderr, "{} non-finite sample{} left out\n", p.rays.non_finite, p.rays.non_finite == 1 ? " was" : "s were");
     }
     if (stop_requested) return 128 + stop_signal;
-    return o.strict && p.rays.non_finite > 0 ? 4 : 0;
-}
-
-int run_compare(const Options& o) {
-    const Image a = read_image(o.arguments[0]), b = read_image(o.arguments[1]);
-    const ImageDifference d = difference(a, b);
-    fmt::print("rmse {:.6g}\nmax {:.6g}\ndiffering_pixels {} of {}\n", d.rmse, d.max, d.differing, d.pixels);
-    return d.rmse <= o.threshold ? 0 : 1;
+    if (o.strict && p.rays.non_finite > 0) return 4;
+    return verdict.within ? 0 : 1;
 }
 
 int run_info(const Options& o) {

@@ -1,4 +1,4 @@
-// The commands that need no window: render, compare, info, list. Each returns the program's exit code.
+// The commands that need no window: render, info, list (compare.h has the other). Each returns the program's exit code.
 // Data goes to stdout, everything else to stderr. Errors of files and options leave as exceptions for main to word.
 #pragma once
 
@@ -7,7 +7,6 @@
 namespace glint {
 
 [[nodiscard]] int run_render(const Options& options);
-[[nodiscard]] int run_compare(const Options& options);
 [[nodiscard]] int run_info(const Options& options);
 [[nodiscard]] int run_list();
 

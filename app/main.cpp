@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "app/compare.h"
 #include "app/headless.h"
 #include "app/options.h"
 #include "app/viewer.h"

@@ -21,8 +21,8 @@ constexpr int kMaxSamples = 1 << 30;
 constexpr std::string_view kUsage =
     "glint: a progressive CPU ray tracer you fly through, and a headless renderer with the same bits.\n\n"
     "  glint [view] [SCENE] [OPTION...]        open the viewer (no SCENE: the showpiece)\n"
-    "  glint render SCENE -o OUT [OPTION...]   render to a .png or .pfm file, without any window\n"
-    "  glint compare A B [--reference-threshold X]       RMSE and largest difference of two pictures\n"
+    "  glint render SCENE -o OUT [OPTION...]   render to a .png, .pfm, .hdr or .exr file, without any window\n"
+    "  glint compare A B [OPTION...]           errors of picture A against B; exit 1 when over the threshold\n"
     "  glint info SCENE                        what a scene holds, which accelerator and kernels it gets\n"
     "  glint list                              built-in scenes, accelerators, samplers, instruction sets\n\n"
     "SCENE is a .p3f, .nff, .gltf, .glb, .ply or .ply.gz file, or builtin:NAME[,key=value...].\n";
@@ -105,7 +105,7 @@ public:
              });
         text("--environment,--hdri-file", "DIR", "folder of six pictures right, left, top, bottom, front, back",
              [this](auto, auto v) { o_.environment = v; });
-        text("--exposure", "EV", "stops brighter (or darker) on display; never touches PFM",
+        text("--exposure", "EV", "stops brighter (or darker) on display; never touches PFM, HDR, EXR",
              [this](auto n, auto v) { o_.exposure = number(n, v, -64.0f, 64.0f, "a number of stops"); });
         text("--transfer", "linear|srgb", "display transfer; default the scene's", [this](auto n, auto v) {
             o_.transfer = static_cast<Transfer>(choice(n, v, std::array<std::string_view, 2>{"linear", "srgb"}));
@@ -115,7 +115,7 @@ public:
     }
 
     void output_options() {
-        text("-o,--output", "FILE", "a .png or .pfm file, - for PNG on stdout; {scene} {accel} {spp} {n} are filled in",
+        text("-o,--output", "FILE", "a .png, .pfm, .hdr or .exr file, - for PNG on stdout; {scene} {accel} {spp} {n} are filled in",
              [this](auto, auto v) { o_.output = v; });
         text("--time", "S", "seconds to render at most",
              [this](auto n, auto v) { o_.time = number(n, v, 0.0, 1e9, "a number of seconds"); });
@@ -133,7 +133,27 @@ public:
     }
 
     void compare_options() {
-        text("--reference-threshold", "X", "largest RMSE that counts as equal; default 0",
+        text("-o,--output", "FILE",
+             "error image: |A-B| of each channel, with --metric flip its map; in a .png the worst channel from black (0.0001) over "
+             "violet (0.001), red (0.01), orange (0.1) to white (1), FLIP the same way from 0 to 1",
+             [this](auto, auto v) { o_.output = v; });
+        text("--stats", "json", "one JSON object instead of the lines", [this](auto n, auto v) {
+            (void)choice(n, v, std::array<std::string_view, 1>{"json"});
+            o_.stats_json = true;
+        });
+        threshold_options();
+    }
+
+    void reference_options() {
+        text("--reference", "FILE", "compare with this picture after rendering; exit 1 when over the threshold",
+             [this](auto, auto v) { o_.reference = v; });
+        threshold_options();
+    }
+
+    void threshold_options() {
+        text("--metric", "rmse|relmse|mae|psnr|flip", "what the threshold is for; default rmse",
+             [this](auto n, auto v) { o_.metric = static_cast<Metric>(choice(n, v, kMetricNames)); });
+        text("--reference-threshold", "X", "largest error that passes (psnr: the least decibels); default: only equal pictures",
              [this](auto n, auto v) { o_.threshold = number(n, v, 0.0, 1e18, "a number of at least 0"); });
     }
 
@@ -248,7 +268,7 @@ std::optional<Options> parse_options(const std::vector<std::string>& words) {
     const bool renders = o.command == Command::view || o.command == Command::render;
     if (renders) parser.render_options(), parser.camera_options();
     if (renders || o.command == Command::info) parser.machine_options();
-    if (o.command == Command::render) parser.output_options();
+    if (o.command == Command::render) parser.output_options(), parser.reference_options();
     if (o.command == Command::compare) parser.compare_options();
     if (!parser.parse(rest)) return std::nullopt;
 
@@ -264,6 +284,7 @@ std::optional<Options> parse_options(const std::vector<std::string>& words) {
         case Command::render:
             expect(0, 1, "one scene");
             if (o.output.empty()) throw UsageError("glint render needs -o FILE");
+            if (o.threshold && o.reference.empty()) throw UsageError("--reference-threshold needs --reference FILE");
             break;
         case Command::compare: expect(2, 2, "two pictures"); break;
         case Command::info: expect(1, 1, "one scene"); break;

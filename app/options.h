@@ -14,6 +14,7 @@
 #include "accel/isa.h"
 #include "app/option_values.h"
 #include "core/accelerator_choice.h"
+#include "core/error_metrics.h"
 #include "core/scene_io.h"
 #include "core/settings.h"
 
@@ -43,7 +44,9 @@ struct Options {
     float exposure = 0.0f;
     std::optional<Transfer> transfer;
     std::optional<std::array<int, 4>> crop;  // x0, x1, y0, y1 from the top left, upper bounds excluded
-    double threshold = 0.0;                  // compare: largest RMSE that still counts as equal
+    std::string reference;                   // render: the picture to compare with; empty = none
+    std::optional<double> threshold;         // what the metric may be at most (psnr: at least); empty = only equal pictures pass
+    Metric metric = Metric::rmse;
     bool stats_json = false, quiet = false, verbose = false, strict = false;
 };
 

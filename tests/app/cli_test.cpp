@@ -32,7 +32,7 @@ TEST_F(CommandLine, BadUsageIsOneLineAndExit2) {
     expect_refused("render builtin:balls -o x.png --crop 5,5,0,9", 2, "--crop");
     expect_refused("render builtin:balls -o x.png --crop 0,9999,0,9", 2, "--crop");
     expect_refused("render builtin:balls -o x.png --threads 99999", 2, "--threads");
-    expect_refused("render builtin:balls -o x.gif", 2, ".png or .pfm");
+    expect_refused("render builtin:balls -o x.gif", 2, ".png, .pfm, .hdr or .exr");
     expect_refused("render builtin:balls", 2, "-o");
     expect_refused("render builtin:balls also -o x.png", 2, "'also'");
     expect_refused("compare one.png", 2, "two pictures");
