@@ -185,7 +185,7 @@ int run_render(const Options& o) {
         write_file_atomically(filled_in(o.output, job), bytes);
     }
     const std::string_view stopped_by = stop_requested ? "signal" : p.finished ? "spp" : "time";
-    nlohmann::json compared;
+    nlohmann::json compared = nlohmann::json::object();
     Reference::Verdict verdict{true, 0.0};
     if (reference) {
         verdict = reference->check(image, job.display, compared);
