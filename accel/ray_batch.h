@@ -31,14 +31,15 @@ struct alignas(64) RayBatch {
         count = 0;
         order = o;
     }
-    // Precondition: count < kRayBatch.
-    void push(const Ray& ray) {
-        for (int i = 0; i < 3; ++i) {
-            origin[i][count] = ray.origin[i];
-            direction[i][count] = ray.direction[i];
+    void set(std::size_t i, const Ray& ray) {
+        for (int axis = 0; axis < 3; ++axis) {
+            origin[axis][i] = ray.origin[axis];
+            direction[axis][i] = ray.direction[axis];
         }
-        t_max[count++] = ray.t_max;
+        t_max[i] = ray.t_max;
     }
+    // Precondition: count < kRayBatch.
+    void push(const Ray& ray) { set(static_cast<std::size_t>(count++), ray); }
     // The batch is n <= kRayBatch rays in a row: push() for all of them, four at a time.
     void assign(const Ray* rays, int n) {
         static_assert(sizeof(Ray) == 28, "two overlapping loads of four floats read a ray");

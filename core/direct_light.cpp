@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <utility>
 
 #include "accel/isa.h"
 #include "core/light_formulas.h"
@@ -72,26 +73,27 @@ struct DirectLightLoops {
 
     // Leaves the cosines of the highlights, 0 where none shows.
     [[gnu::always_inline]] static inline void highlight_run(DirectLight& d, const Vertices& v, std::size_t first) {
+        const Rows& horizon = v.points.horizons();
 #pragma GCC ivdep
         for (std::size_t k = first; k < first + kRun; ++k) {
             const glm::vec3 wi = vector_at(d.wi_, k), h = vector_at(v.wo, k) + wi;
             const float h2 = glm::dot(h, h);
             const float n_h = glm::dot(vector_at(v.points.ns, k), h) / std::sqrt(h2);
             const bool shows = (v.highlit[k] != 0) & (h2 > 0.0f) & (n_h > 0.0f) &
-                               (glm::dot(vector_at(v.points.ns, k), wi) > 0.0f) &
-                               (glm::dot(vector_at(v.points.ng, k), wi) > 0.0f);
+                               (glm::dot(vector_at(v.points.ns, k), wi) > 0.0f) & (glm::dot(vector_at(horizon, k), wi) > 0.0f);
             d.highlight_[k] = shows ? n_h : 0.0f;
         }
     }
 
     template <bool kHighlights>
     [[gnu::always_inline]] static inline void reflect_run(DirectLight& d, const Vertices& v, std::size_t first) {
+        const Rows& horizon = v.points.horizons();
 #pragma GCC ivdep
         for (std::size_t k = first; k < first + kRun; ++k) {
             const glm::vec3 wi = vector_at(d.wi_, k);
             const float n_l = glm::dot(vector_at(v.points.ns, k), wi);
             // Both terms need the light above the surface; a highlight on the dark side is a classic slip.
-            const bool above = (n_l > 0.0f) & (glm::dot(vector_at(v.points.ng, k), wi) > 0.0f) & (v.lit[k] != 0);
+            const bool above = (n_l > 0.0f) & (glm::dot(vector_at(horizon, k), wi) > 0.0f) & (v.lit[k] != 0);
             glm::vec3 reflectance = vector_at(v.diffuse, k) * n_l;
             if constexpr (kHighlights) reflectance += vector_at(v.specular, k) * d.highlight_[k];
             const glm::vec3 light = where(above, vector_at(d.light_, k) * reflectance);
@@ -206,6 +208,7 @@ void DirectLight::reflect(const Light& light, const Vertices& vertices) noexcept
 void DirectLight::cast(const Light& light, bool starts_at_light, const Vertices& vertices, RayBatch& rays) noexcept {
     const Ranks ranks(shows_, vertices.count);
     rays_ = ranks.kept();
+    lifts_ = 0;
     rays.count = static_cast<int>(rays_);
     if (rays_ == 0) return;
     const Cast kind = cast_of(light, starts_at_light);
@@ -226,6 +229,38 @@ void DirectLight::cast(const Light& light, bool starts_at_light, const Vertices&
     }
     std::iota(vertex_, vertex_ + vertices.count, 0u);
     ranks.close(vertex_);
+    if (vertices.points.smooth) cast_to_lifted(light, starts_at_light, vertices, rays);
+}
+
+// Few: where a facet turns away and the rounded surface does not yet. Their rays are replaced.
+void DirectLight::cast_to_lifted(const Light& light, bool starts_at_light, const Vertices& vertices, RayBatch& rays) noexcept {
+    const SurfacePoints& points = vertices.points;
+    LightSample l;
+    l.at_infinity = light.shape == Light::Shape::directional;
+    for (std::uint32_t n = 0; n < rays_; ++n) {
+        const std::uint32_t k = vertex_[n];
+        l.wi = vector_at(wi_, k);
+        if (!is_low(l.wi, vector_at(points.ng, k), vector_at(points.lift, k), points.bend[k])) continue;
+        l.point = light.has_area() ? vector_at(point_, k) : light.position;
+        rays.set(n, shadow_ray(light, l, points[k], starts_at_light));
+        lift_[lifts_++] = n;
+    }
+}
+
+bool DirectLight::cast_lifts(const OccludedBatch& blocked, const Vertices& vertices, RayBatch& rays) noexcept {
+    rays.clear(RayOrder::coherent);
+    const std::size_t lifted_points = std::exchange(lifts_, 0);
+    for (std::size_t i = 0; i < lifted_points; ++i) {
+        const std::uint32_t n = lift_[i];
+        if (blocked[n]) continue;
+        lift_[lifts_++] = n;
+        rays.push(lift_ray(vertices.points[vertex_[n]]));
+    }
+    return lifts_ > 0;
+}
+
+void DirectLight::block(const OccludedBatch& lifts, OccludedBatch& blocked) const noexcept {
+    for (std::size_t i = 0; i < lifts_; ++i) blocked[lift_[i]] = lifts[i];
 }
 
 void DirectLight::add(const OccludedBatch& blocked, Vertices& vertices) const noexcept {

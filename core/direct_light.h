@@ -18,7 +18,7 @@ namespace glint {
                                                bool highlight) {
     const float n_l = glm::dot(s.ns, l.wi);
     // Both terms need the light above the surface; a highlight on the dark side is a classic slip.
-    if (!(n_l > 0.0f) || !(glm::dot(s.ng, l.wi) > 0.0f)) return glm::vec3(0.0f);
+    if (!(n_l > 0.0f) || !(glm::dot(horizon(s), l.wi) > 0.0f)) return glm::vec3(0.0f);
     glm::vec3 reflectance = m.diffuse * n_l;
     if (highlight) {
         const glm::vec3 h = wo + l.wi;
@@ -29,9 +29,10 @@ namespace glint {
     return l.arriving * reflectance;
 }
 
-// The ray that asks whether the sampled point of the light is seen from `s`. From a light whose rays start at it (see
+// The ray that asks whether the sampled point of the light is seen from `point`. From a light whose rays start at it (see
 // shadow_origins.h) they all have one origin, which lets an accelerator trace them together.
-[[nodiscard]] inline Ray shadow_ray(const Light& light, const LightSample& l, const SurfacePoint& s, bool starts_at_light) {
+[[nodiscard]] inline Ray shadow_ray(const Light& light, const LightSample& l, const SurfacePoint& point, bool starts_at_light) {
+    const SurfacePoint s = is_low(l.wi, point) ? lifted(point) : point;
     if (starts_at_light) return {light.position, direction_to(s, light.position), 1.0f};
     const glm::vec3 origin = spawn_origin(s, s.ng);
     if (l.at_infinity) return {origin, l.wi, kInfinity};
@@ -48,6 +49,10 @@ struct alignas(64) DirectLight {
     void reflect(const Light& light, const Vertices& vertices) noexcept;
     // The rays that ask, in the order of the vertices, for those with any light.
     void cast(const Light& light, bool starts_at_light, const Vertices& vertices, RayBatch& rays) noexcept;
+    // Where light has reached a lifted point, the rays that ask whether it gets down from there; false when there are none.
+    [[nodiscard]] bool cast_lifts(const OccludedBatch& blocked, const Vertices& vertices, RayBatch& rays) noexcept;
+    // Blocks the light whose way down is blocked.
+    void block(const OccludedBatch& lifts, OccludedBatch& blocked) const noexcept;
     // Adds the light to the vertices whose ray was not blocked.
     void add(const OccludedBatch& blocked, Vertices& vertices) const noexcept;
     // Adds it to all.
@@ -56,11 +61,14 @@ struct alignas(64) DirectLight {
 private:
     friend struct DirectLightLoops;
 
+    void cast_to_lifted(const Light& light, bool starts_at_light, const Vertices& vertices, RayBatch& rays) noexcept;
+
     float wi_[3][kRayBatch], point_[3][kRayBatch], light_[3][kRayBatch], cosine_[kRayBatch], highlight_[kRayBatch];
     std::uint32_t shows_[kRayBatch];   // all bits where there is any light, else none
     std::uint32_t vertex_[kRayBatch];  // of each ray
     std::size_t rays_ = 0;
-    bool at_infinity_ = false;
+    std::uint32_t lift_[kRayBatch];  // of each ray from lifted points, its place among the rays; then of those on lifts
+    std::size_t lifts_ = 0;
 };
 
 }  // namespace glint

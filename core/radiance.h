@@ -142,6 +142,11 @@ private:
         if (rays.count == 0) return;
         work_.counts.shadow += static_cast<std::uint64_t>(rays.count);
         accelerator_.occluded(rays, work_.blocked);
+        if (work_.vertices.points.smooth && direct.cast_lifts(work_.blocked, work_.vertices, rays)) {
+            work_.counts.shadow += static_cast<std::uint64_t>(rays.count);
+            accelerator_.occluded(rays, work_.lifts_blocked);
+            direct.block(work_.lifts_blocked, work_.blocked);
+        }
         direct.add(work_.blocked, work_.vertices);
     }
 

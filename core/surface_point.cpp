@@ -9,12 +9,18 @@ namespace {
 
 using namespace surface;
 
-inline Exact on_triangle_of(const Geometry& g, const std::vector<glm::vec3>& normals, std::uint32_t i, const Hit& hit) {
+inline Exact on_triangle_of(const Geometry& g, const std::vector<glm::vec3>& normals, std::uint32_t i, const Hit& hit,
+                            const glm::dvec3& d) {
     const auto& index = g.triangles[i];
     const auto corner = [&](const std::vector<glm::vec3>& of, std::size_t k) { return glm::dvec3(of[index[k]]); };
     const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
-    Exact e = on_triangle(corner(g.vertices, 0), corner(g.vertices, 1), corner(g.vertices, 2), u, v);
-    if (!normals.empty()) e.ns = shading_normal(e.ng, corner(normals, 0), corner(normals, 1), corner(normals, 2), u, v);
+    const glm::dvec3 a = corner(g.vertices, 0), b = corner(g.vertices, 1), c = corner(g.vertices, 2);
+    Exact e = on_triangle(a, b, c, u, v);
+    if (normals.empty()) return e;
+    const glm::dvec3 na = corner(normals, 0), nb = corner(normals, 1), nc = corner(normals, 2);
+    e.ns = shading_normal(e.ng, na, nb, nc, u, v);
+    e.lift = tangent_lift(e, d, u, v, a, b, c, na, nb, nc);
+    e.bend = bend(e.ng, na, nb, nc);
     return e;
 }
 
@@ -63,6 +69,8 @@ Exact on_plane(const Plane& plane, glm::dvec3 near) {
     s.p = r.p;
     s.ng = r.ng;
     s.ns = r.ns;
+    s.lift = r.lift;
+    s.bend = r.bend;
     s.outside = r.outside;
     s.error = r.error;
     s.error_from_afar = r.error_from_afar;
@@ -84,6 +92,7 @@ Errors move_to_world(const AffineMap& object_from_world, const Aabb& box, Exact&
     e.p -= world_from_object.vector(object_from_world.point(e.p) - own);
     e.ng = n * scale;
     e.ns = unit(object_from_world.normal_before(e.ns));
+    e.lift = world_from_object.vector(e.lift);  // planes stay planes, so it leads to the moved smooth surface
     const glm::dvec3 size = glm::dvec3(box.hi) - glm::dvec3(box.lo);
     double way = 0.0;
     for (const auto& r : world_from_object.row)
@@ -103,7 +112,7 @@ Errors move_to_world(const AffineMap& object_from_world, const Aabb& box, Exact&
     const std::uint32_t i = index_of(at.id);
     Exact e{};
     switch (kind_of(at.id)) {
-        case PrimitiveKind::triangle: e = on_triangle_of(g, surfaces.normals, i, hit); break;
+        case PrimitiveKind::triangle: e = on_triangle_of(g, surfaces.normals, i, hit, glm::dvec3(own.direction)); break;
         case PrimitiveKind::sphere: e = on_sphere_of(g.spheres[i], near); break;
         case PrimitiveKind::box: e = on_box(g.boxes[i], near, static_cast<int>(hit.u)); break;
         case PrimitiveKind::cone: e = on_cone(g.cones[i], near); break;
@@ -111,7 +120,12 @@ Errors move_to_world(const AffineMap& object_from_world, const Aabb& box, Exact&
     }
     s.material = surfaces.material(at.id);
     // The identity rounds nothing: the answer is that of the same primitive in the world.
-    const Errors errors = map.is_identity() ? errors_in_world(e) : move_to_world(map, g.bounds(at.id), e);
+    const bool moved = !map.is_identity();
+    const Errors errors = moved ? move_to_world(map, g.bounds(at.id), e) : errors_in_world(e);
+    if (moved && e.bend > 0.0) {
+        const auto normal = [&](std::size_t k) { return map.normal_before(glm::dvec3(surfaces.normals[g.triangles[i][k]])); };
+        e.bend = bend(e.ng, normal(0), normal(1), normal(2));
+    }
     finish(e, errors, glm::dvec3(ray.direction), s);
 }
 
@@ -124,7 +138,7 @@ void find_surface_point(const Scene& scene, glm::vec3 origin, glm::vec3 directio
     s.material = scene.material_of[static_cast<std::size_t>(kind_of(hit.primitive))][i];
     const glm::dvec3 d(direction), near = glm::dvec3(origin) + static_cast<double>(hit.t) * d;
     switch (kind_of(hit.primitive)) {
-        case PrimitiveKind::triangle: return finish(on_triangle_of(g, scene.normals, i, hit), d, s);
+        case PrimitiveKind::triangle: return finish(on_triangle_of(g, scene.normals, i, hit, d), d, s);
         case PrimitiveKind::sphere: return finish(on_sphere_of(g.spheres[i], near), d, s);
         case PrimitiveKind::box: return finish(on_box(g.boxes[i], near, static_cast<int>(hit.u)), d, s);
         case PrimitiveKind::cone: return finish(on_cone(g.cones[i], near), d, s);

@@ -28,6 +28,7 @@ struct Spheres {
     return {static_cast<double>(rows[0][k]), static_cast<double>(rows[1][k]), static_cast<double>(rows[2][k])};
 }
 
+template <bool kSmooth>
 [[gnu::always_inline]] inline void put(const Rounded& s, SurfacePoints& points, std::size_t k) {
     set_vector(points.p, k, s.p);
     set_vector(points.ng, k, s.ng);
@@ -35,6 +36,11 @@ struct Spheres {
     points.error[k] = s.error;
     points.error_from_afar[k] = s.error_from_afar;
     points.outside[k] = s.outside ? 1u : 0u;
+    if constexpr (kSmooth) {
+        set_vector(points.lift, k, s.lift);
+        points.bend[k] = s.bend;
+        set_vector(points.horizon, k, horizon(s.ng, s.ns, s.lift));
+    }
 }
 
 template <bool kSmooth>
@@ -42,11 +48,15 @@ template <bool kSmooth>
 #pragma GCC ivdep
     for (std::size_t k = 0; k < kRun; ++k) {
         const double u = static_cast<double>(in.u[k]), v = static_cast<double>(in.v[k]);
-        Exact e = on_triangle(at(in.corner[0], k), at(in.corner[1], k), at(in.corner[2], k), u, v);
+        const glm::dvec3 a = at(in.corner[0], k), b = at(in.corner[1], k), c = at(in.corner[2], k), d = at(in.direction, k);
+        Exact e = on_triangle(a, b, c, u, v);
         if constexpr (kSmooth) {
-            e.ns = shading_normal(e.ng, at(in.normal[0], k), at(in.normal[1], k), at(in.normal[2], k), u, v);
+            const glm::dvec3 na = at(in.normal[0], k), nb = at(in.normal[1], k), nc = at(in.normal[2], k);
+            e.ns = shading_normal(e.ng, na, nb, nc, u, v);
+            e.lift = tangent_lift(e, d, u, v, a, b, c, na, nb, nc);
+            e.bend = bend(e.ng, na, nb, nc);
         }
-        put(finished(e, at(in.direction, k)), points, first + k);
+        put<kSmooth>(finished(e, d), points, first + k);
     }
 }
 
@@ -54,7 +64,7 @@ template <bool kSmooth>
 #pragma GCC ivdep
     for (std::size_t k = 0; k < kRun; ++k) {
         const glm::dvec3 d = at(in.direction, k), near = at(in.origin, k) + static_cast<double>(in.t[k]) * d;
-        put(finished(on_sphere(at(in.center, k), static_cast<double>(in.radius[k]), near), d), points, first + k);
+        put<false>(finished(on_sphere(at(in.center, k), static_cast<double>(in.radius[k]), near), d), points, first + k);
     }
 }
 
@@ -126,8 +136,12 @@ void set_triangles(const Scene& scene, const RayBatch& rays, const HitBatch& hit
     for (int axis = 0; axis < 3; ++axis) read(rays.direction[axis], lanes, in.direction[axis]);
     read(hits.u, lanes, in.u);
     read(hits.v, lanes, in.v);
-    if (scene.normals.empty()) return flat_triangles_avx2(in, points, first);
+    if (scene.normals.empty()) {
+        flat_triangles_avx2(in, points, first);
+        return points.set_flat(first, kRun);
+    }
     read_corners_avx2(scene.normals, g.triangles, triangle, in.normal);
+    points.become_smooth();
     smooth_triangles_avx2(in, points, first);
 }
 
@@ -149,6 +163,7 @@ void set_spheres(const Scene& scene, const RayBatch& rays, const HitBatch& hits,
     }
     read(hits.t, lanes, in.t);
     spheres_avx2(in, points, first);
+    points.set_flat(first, kRun);
 }
 
 }  // namespace
@@ -156,6 +171,7 @@ void set_spheres(const Scene& scene, const RayBatch& rays, const HitBatch& hits,
 void find_surface_points(const Scene& scene, const RayBatch& rays, const HitBatch& hits, std::span<const std::uint32_t> lanes,
                          SurfacePoints& points) noexcept {
     const bool vectors = isa_in_use() != Isa::baseline;
+    points.smooth = false;
     const bool all_triangles = vectors && fetch_triangles(scene, hits, lanes);
     for (std::size_t first = 0; first < lanes.size(); first += kRun) {
         const auto run = lanes.subspan(first, std::min(kRun, lanes.size() - first));

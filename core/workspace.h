@@ -60,7 +60,7 @@ struct Workspace {
     Glass glass;
     RayBatch rays, shadow_rays;  // rays: of the lanes
     HitBatch hits;
-    OccludedBatch blocked;
+    OccludedBatch blocked, lifts_blocked;
     // Where rays have met surfaces, and of which lanes.
     Vertices vertices;
     std::array<std::uint32_t, kRayBatch> met;

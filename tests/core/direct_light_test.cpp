@@ -45,9 +45,11 @@ std::vector<Light> all_kinds_of_lights() {
     return lights;
 }
 
-// Points around the lights, some in them and one at their middle; stretches of one material, and all mixed.
-void set_vertices(std::size_t n, std::span<const Material> materials, Vertices& v) {
+// Points around the lights, some in them and one at their middle; stretches of one material, and all mixed. Where they are
+// smooth, half have a lift, some of these downwards.
+void set_vertices(std::size_t n, std::span<const Material> materials, bool smooth, Vertices& v) {
     v.count = n;
+    v.points.smooth = false;
     for (std::uint32_t k = 0; k < n; ++k) {
         SurfacePoint s;
         s.p = glm::vec3(1.0f, 2.0f, -0.5f) + (k % 7 == 0 ? 0.5f : 4.0f) * uniform(k, 1) * direction(k, 2);
@@ -58,6 +60,10 @@ void set_vertices(std::size_t n, std::span<const Material> materials, Vertices& 
         s.error_from_afar = 8e-7f;
         s.outside = true;
         s.material = k < 40 ? 1 : hash(k) % static_cast<std::uint32_t>(materials.size());
+        if (smooth && k % 2 == 1) {
+            s.lift = 0.1f * glm::normalize(s.ng + 1.5f * direction(k, 12));
+            s.bend = 0.9f;
+        }
         v.points.set(k, s);
         const glm::vec3 wo = direction(k, 8);
         for (int i = 0; i < 3; ++i) v.wo[i][k] = wo[i];
@@ -68,12 +74,12 @@ void expect_same_bits(glm::vec3 a, glm::vec3 b) {
     for (int i = 0; i < 3; ++i) EXPECT_EQ(std::bit_cast<std::uint32_t>(a[i]), std::bit_cast<std::uint32_t>(b[i]));
 }
 
-void expect_light_of_single_vertices(const Light& light, bool highlights, bool at_light, std::size_t n) {
+void expect_light_of_single_vertices(const Light& light, bool highlights, bool at_light, bool smooth, std::size_t n) {
     static Vertices v;
     static DirectLight direct;
     static RayBatch rays;
     const std::vector<Material> materials = some_materials();
-    set_vertices(n, materials, v);
+    set_vertices(n, materials, smooth, v);
     v.set_materials(materials, highlights);
     for (std::uint32_t k = 0; k < n; ++k) direct.u[0][k] = uniform(k, 10), direct.u[1][k] = uniform(k, 11);
     direct.reflect(light, v);
@@ -81,8 +87,16 @@ void expect_light_of_single_vertices(const Light& light, bool highlights, bool a
     direct.cast(light, at_light, v, rays);
     OccludedBatch blocked{};
     for (std::size_t i = 0; i < blocked.size(); ++i) blocked[i] = i % 3 == 1;
-    direct.add(blocked, v);
-    int ray = 0, lit = 0;
+    OccludedBatch blocked_too = blocked, lifts_blocked{};
+    static RayBatch lifts;
+    if (direct.cast_lifts(blocked, v, lifts)) {
+        for (std::size_t i = 0; i < lifts_blocked.size(); ++i) lifts_blocked[i] = i % 5 == 2;
+        direct.block(lifts_blocked, blocked_too);
+    } else {
+        EXPECT_EQ(lifts.count, 0);
+    }
+    direct.add(blocked_too, v);
+    int ray = 0, lit = 0, lift = 0;
     for (std::uint32_t k = 0; k < n; ++k) {
         const SurfacePoint s = v.points[k];
         const Material& m = materials[s.material];
@@ -95,22 +109,34 @@ void expect_light_of_single_vertices(const Light& light, bool highlights, bool a
             expect_same_bits(many.origin, one.origin);
             expect_same_bits(many.direction, one.direction);
             EXPECT_EQ(std::bit_cast<std::uint32_t>(many.t_max), std::bit_cast<std::uint32_t>(one.t_max));
-            if (blocked[static_cast<std::size_t>(ray++)]) expected = glm::vec3(0.0f);
+            bool seen = !blocked[static_cast<std::size_t>(ray++)];
+            if (seen && is_low(l.wi, s)) {
+                ASSERT_LT(lift, lifts.count);
+                expect_same_bits(lifts[lift].origin, lift_ray(s).origin);
+                expect_same_bits(lifts[lift].direction, lift_ray(s).direction);
+                EXPECT_EQ(lifts[lift].t_max, 1.0f);
+                seen = !lifts_blocked[static_cast<std::size_t>(lift++)];
+            }
+            if (!seen) expected = glm::vec3(0.0f);
             ++lit;
         }
         expect_same_bits({v.direct[0][k], v.direct[1][k], v.direct[2][k]}, expected);
     }
     EXPECT_EQ(ray, rays.count);
+    EXPECT_EQ(lift, lifts.count);
     EXPECT_GT(lit, n > 100 ? 10 : -1);
+    EXPECT_GT(lift, smooth && n > 200 ? 3 : -1);
 }
 
 TEST(DirectLight, IsThatOfEachVertexAloneForEveryKindOfLightAndInstructionSet) {
     for_each_isa([](Isa) {
         for (const Light& light : all_kinds_of_lights()) {
             for (const std::size_t n : {1u, 7u, 8u, 131u, 256u}) {
-                expect_light_of_single_vertices(light, true, false, n);
-                expect_light_of_single_vertices(light, false, false, n);
-                if (light.is_true_point()) expect_light_of_single_vertices(light, true, true, n);
+                for (const bool smooth : {false, true}) {
+                    expect_light_of_single_vertices(light, true, false, smooth, n);
+                    expect_light_of_single_vertices(light, false, false, smooth, n);
+                    if (light.is_true_point()) expect_light_of_single_vertices(light, true, true, smooth, n);
+                }
             }
         }
     });
@@ -120,7 +146,7 @@ TEST(DirectLight, WithoutShadowsAllOfItArrives) {
     static Vertices v;
     static DirectLight direct;
     const std::vector<Material> materials = some_materials();
-    set_vertices(100, materials, v);
+    set_vertices(100, materials, true, v);
     v.set_materials(materials, true);
     const Light light = all_kinds_of_lights()[0];
     direct.reflect(light, v);

@@ -39,6 +39,9 @@ void expect_points_of_single_hits(const Scene& scene) {
         expect_same(many.p, one.p);
         expect_same(many.ng, one.ng);
         expect_same(many.ns, one.ns);
+        expect_same(many.lift, one.lift);
+        expect_same(vector_at(points.horizons(), k), horizon(one));
+        EXPECT_EQ(many.bend, one.bend);
         EXPECT_EQ(many.outside, one.outside);
         EXPECT_EQ(many.error, one.error);
         EXPECT_EQ(many.error_from_afar, one.error_from_afar);

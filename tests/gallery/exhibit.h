@@ -28,7 +28,6 @@ struct Exhibit {
     std::vector<Pair> pairs;
     std::string plot;      // an SVG, may be empty
     double allowed = 0.0;  // defects that ours may have: above 0 only where they are a measured error, not a count
-    bool open = false;     // glint fails as the textbook does, and the exhibit says so
 };
 
 // width: of a picture, a multiple of 8. Each function makes one exhibit.

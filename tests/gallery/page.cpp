@@ -129,8 +129,8 @@ std::string page_of(const std::vector<Exhibit>& exhibits) {
     }
     page += "</ol></nav>\n";
     for (const Exhibit& e : exhibits) {
-        page += fmt::format("<section id=\"{}\">\n<p class=\"id\">{}{}</p>\n<h2>{}</h2>\n<p>{}</p>\n<p>{}</p>\n", anchor(e), e.id,
-                            e.open ? " &middot; open" : "", e.title, e.seen, e.instead);
+        page += fmt::format("<section id=\"{}\">\n<p class=\"id\">{}</p>\n<h2>{}</h2>\n<p>{}</p>\n<p>{}</p>\n", anchor(e), e.id,
+                            e.title, e.seen, e.instead);
         if (!e.plot.empty()) page += "<div class=\"plot\">" + e.plot + "</div>\n";
         for (const Pair& p : e.pairs) {
             page += "<div class=\"pair\">\n" + figure(e, p.textbook, false, 512) + figure(e, p.ours, true, 512) + "</div>\n";
