@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "app/chart.h"
 #include "app/compare.h"
 #include "app/headless.h"
 #include "app/options.h"
@@ -43,6 +44,7 @@ int run(const glint::Options& o) {
         case glint::Command::view: return view(o);
         case glint::Command::render: return glint::run_render(o);
         case glint::Command::compare: return glint::run_compare(o);
+        case glint::Command::chart: return glint::run_chart(o);
         case glint::Command::info: return glint::run_info(o);
         case glint::Command::list: return glint::run_list();
     }

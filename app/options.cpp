@@ -13,16 +13,18 @@
 namespace glint {
 namespace {
 
-constexpr std::array<std::string_view, 5> kCommandNames{"view", "render", "compare", "info", "list"};
+constexpr std::array<std::string_view, 6> kCommandNames{"view", "render", "compare", "chart", "info", "list"};
 constexpr int kMaxSide = 65535;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 constexpr int kMaxSamples = 1 << 30;
+constexpr std::int64_t kMaxChartPixels = 1 << 20;  // several pictures' sums are kept at a time
 
 constexpr std::string_view kUsage =
     "glint: a progressive CPU ray tracer you fly through, and a headless renderer with the same bits.\n\n"
     "  glint [view] [SCENE] [OPTION...]        open the viewer (no SCENE: the showpiece)\n"
     "  glint render SCENE -o OUT [OPTION...]   render to a .png, .pfm, .hdr or .exr file, without any window\n"
     "  glint compare A B [OPTION...]           errors of picture A against B; exit 1 when over the threshold\n"
+    "  glint chart [SCENE...] -o DIR           speed against accuracy, measured and drawn as a page\n"
     "  glint info SCENE                        what a scene holds, which accelerator and kernels it gets\n"
     "  glint list                              built-in scenes, accelerators, samplers, instruction sets\n\n"
     "SCENE is a .p3f, .nff, .gltf, .glb, .ply or .ply.gz file, or builtin:NAME[,key=value...].\n";
@@ -41,13 +43,7 @@ public:
     }
 
     void render_options() {
-        text("--resolution", "WxH", "image size; default the scene's", [this](std::string_view n, std::string_view v) {
-            const auto parts = split(v, "x,");
-            if (parts.size() != 2) refuse_value(n, v, "a size WxH");
-            o_.width = number(n, parts[0], 1, kMaxSide, "a size from 1x1 to 65535x65535");
-            o_.height = number(n, parts[1], 1, kMaxSide, "a size from 1x1 to 65535x65535");
-            if (std::int64_t{o_.width} * o_.height > kMaxPixels) refuse_value(n, v, "a size of at most 2^28 pixels");
-        });
+        resolution("image size; default the scene's");
         text("--spp", "N", "samples a pixel; default the scene's, else 64 (viewer: 4096)",
              [this](auto n, auto v) { o_.spp = number(n, v, 1, kMaxSamples, "a number of samples (1 or more)"); });
         text("--threads", "N", "0 = all that the process may use, -1 = all but one",
@@ -115,7 +111,8 @@ public:
     }
 
     void output_options() {
-        text("-o,--output", "FILE", "a .png, .pfm, .hdr or .exr file, - for PNG on stdout; {scene} {accel} {spp} {n} are filled in",
+        text("-o,--output", "FILE",
+             "a .png, .pfm, .hdr or .exr file, - for PNG on stdout; {scene} {accel} {spp} {n} are filled in",
              [this](auto, auto v) { o_.output = v; });
         text("--time", "S", "seconds to render at most",
              [this](auto n, auto v) { o_.time = number(n, v, 0.0, 1e9, "a number of seconds"); });
@@ -134,7 +131,8 @@ public:
 
     void compare_options() {
         text("-o,--output", "FILE",
-             "error image: |A-B| of each channel, with --metric flip its map; in a .png the worst channel from black (0.0001) over "
+             "error image: |A-B| of each channel, with --metric flip its map; in a .png the worst channel from black (0.0001) "
+             "over "
              "violet (0.001), red (0.01), orange (0.1) to white (1), FLIP the same way from 0 to 1",
              [this](auto, auto v) { o_.output = v; });
         text("--stats", "json", "one JSON object instead of the lines", [this](auto n, auto v) {
@@ -155,6 +153,22 @@ public:
              [this](auto n, auto v) { o_.metric = static_cast<Metric>(choice(n, v, kMetricNames)); });
         text("--reference-threshold", "X", "largest error that passes (psnr: the least decibels); default: only equal pictures",
              [this](auto n, auto v) { o_.threshold = number(n, v, 0.0, 1e18, "a number of at least 0"); });
+    }
+
+    void chart_options() {
+        text("-o,--output", "DIR", "folder for index.html, pictures, numbers and references",
+             [this](auto, auto v) { o_.output = v; });
+        app_.add_flag("--quick", o_.quick, "three scenes, fewer seeds and samples: under two minutes");
+        resolution("image size; default about 96x72 in the scene's shape (--quick: 64x48)");
+        text("--spp", "N", "where curves end; default 256 samples a pixel (--quick: 64)",
+             [this](auto n, auto v) { o_.spp = number(n, v, 4, 65536, "a number of samples (4 to 65536)"); });
+        text("--features", "LIST", "of every scene, as for render", [this](auto, auto v) { o_.features = v; });
+        text("--threads", "N", "0 = all that the process may use, -1 = all but one",
+             [this](auto n, auto v) { o_.threads = number(n, v, -1, 1024, "a number of threads (-1 to 1024)"); });
+        text("--seed", "N", "the first seed", [this](auto n, auto v) {
+            o_.settings.seed = number(n, v, std::uint64_t{0}, std::uint64_t{1} << 32, "a whole number of at most 2^32");
+        });
+        app_.add_flag("--quiet", o_.quiet, "no progress");
     }
 
     // False when only help or version was asked for.
@@ -191,6 +205,15 @@ private:
                 names, [check, name](const std::string& v) { check(std::string_view(name), std::string_view(v)); }, help)
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
             ->type_name(value);
+    }
+    void resolution(const std::string& help) {
+        text("--resolution", "WxH", help, [this](std::string_view n, std::string_view v) {
+            const auto parts = split(v, "x,");
+            if (parts.size() != 2) refuse_value(n, v, "a size WxH");
+            o_.width = number(n, parts[0], 1, kMaxSide, "a size from 1x1 to 65535x65535");
+            o_.height = number(n, parts[1], 1, kMaxSide, "a size from 1x1 to 65535x65535");
+            if (std::int64_t{o_.width} * o_.height > kMaxPixels) refuse_value(n, v, "a size of at most 2^28 pixels");
+        });
     }
     template <class Set>
     void length(const std::string& name, const std::string& help, Set set) {
@@ -267,9 +290,10 @@ std::optional<Options> parse_options(const std::vector<std::string>& words) {
     Parser parser(o);
     const bool renders = o.command == Command::view || o.command == Command::render;
     if (renders) parser.render_options(), parser.camera_options();
-    if (renders || o.command == Command::info) parser.machine_options();
+    if (renders || o.command == Command::info || o.command == Command::chart) parser.machine_options();
     if (o.command == Command::render) parser.output_options(), parser.reference_options();
     if (o.command == Command::compare) parser.compare_options();
+    if (o.command == Command::chart) parser.chart_options();
     if (!parser.parse(rest)) return std::nullopt;
 
     const auto expect = [&](std::size_t least, std::size_t most, std::string_view what) {
@@ -287,6 +311,11 @@ std::optional<Options> parse_options(const std::vector<std::string>& words) {
             if (o.threshold && o.reference.empty()) throw UsageError("--reference-threshold needs --reference FILE");
             break;
         case Command::compare: expect(2, 2, "two pictures"); break;
+        case Command::chart:
+            if (o.output.empty()) throw UsageError("glint chart needs -o DIR");
+            if (std::int64_t{o.width} * o.height > kMaxChartPixels)
+                throw UsageError("--resolution: a chart takes at most 2^20 pixels");
+            break;
         case Command::info: expect(1, 1, "one scene"); break;
         case Command::list: expect(0, 0, "no arguments"); break;
     }

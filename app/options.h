@@ -20,7 +20,7 @@
 
 namespace glint {
 
-enum class Command { view, render, compare, info, list };
+enum class Command { view, render, compare, chart, info, list };
 
 struct Options {
     Command command = Command::view;
@@ -47,6 +47,7 @@ struct Options {
     std::string reference;                   // render: the picture to compare with; empty = none
     std::optional<double> threshold;         // what the metric may be at most (psnr: at least); empty = only equal pictures pass
     Metric metric = Metric::rmse;
+    bool quick = false;  // chart: fewer scenes, seeds and samples
     bool stats_json = false, quiet = false, verbose = false, strict = false;
 };
 

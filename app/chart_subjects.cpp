@@ -1,0 +1,186 @@
+#include "app/chart_subjects.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "app/chart_figure.h"
+#include "core/render_plan.h"
+
+namespace glint::chart {
+namespace {
+
+struct Shipped {
+    const char *spec, *features, *stresses;
+    int most_spp;
+    bool quick;
+};
+
+// The glass ball follows two branches at every surface and costs ten times as much a sample.
+constexpr std::array<Shipped, 6> kShipped{{
+    {"builtin:balls,level=3", "", "edges in mirrors", 256, true},
+    {"builtin:cornell", "", "soft shadows under an area light", 256, true},
+    {"builtin:dof", "", "depth of field", 256, false},
+    {"builtin:glass,what=ball", "", "glass", 64, true},
+    {"builtin:balls,level=2", "all", "fuzzy mirrors, and everything else at once", 256, false},
+    {"builtin:knot,n=100000", "+soft", "a fine mesh under soft light", 256, false},
+}};
+
+// C-01 of the protocol: at least so many times the samples of what is judged, in replicates of an eighth each.
+constexpr int kTimesSamples = 64, kReplicates = 8;
+// The reference's squared error against the smallest one it judges; the rule asks for 0.01.
+constexpr double kWantedShare = 0.005;
+constexpr int kMostReplicates = 8 * kReplicates;
+// Seeds of references, far from those of tests.
+constexpr std::uint64_t kReferenceSeed = std::uint64_t{1} << 40;
+
+Subject subject_of(const Options& o, const std::string& spec, const std::string& features, const std::string& stresses,
+                   int most_spp) {
+    Subject s;
+    s.spec = spec;
+    s.stresses = stresses;
+    s.features = o.features.empty() ? features : o.features;
+    s.scene = load_scene(spec);
+    s.settings.features = features_of(*s.scene);
+    bool whitted = false;
+    if (!s.features.empty()) s.settings.features = edit_features(s.features, s.settings.features, whitted);
+    s.seed = o.settings.seed == 0 ? 1 : o.settings.seed;
+    s.most_spp = o.spp > 0 ? o.spp : o.quick ? std::min(64, most_spp) : most_spp;
+    if (o.width > 0) {
+        s.width = o.width;
+        s.height = o.height;
+        return s;
+    }
+    // As many pixels for each scene, in its own shape.
+    const double pixels = o.quick ? 64.0 * 48.0 : 96.0 * 72.0;
+    const double aspect = std::clamp(static_cast<double>(s.scene->width) / s.scene->height, 0.1, 10.0);
+    s.height = std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / aspect))));
+    s.width = std::max(1, static_cast<int>(std::lround(pixels / s.height)));
+    return s;
+}
+
+RenderSettings reference_settings(const Subject& subject, SamplerKind sampler, bool deep) {
+    RenderSettings s = subject.settings;
+    s.sampler = sampler;
+    if (deep) s.depth *= 2;
+    return s;
+}
+
+int replicate_spp(const Subject& subject) { return std::max(1, kTimesSamples / kReplicates * subject.most_spp); }
+
+bool has_branches(const Subject& subject) {
+    const RenderPlan plan = plan_render(*subject.scene, subject.settings, subject.scene->cameras.front());
+    return plan.has(kernel_part::glass) || plan.has(kernel_part::mirror);
+}
+
+}  // namespace
+
+std::vector<Subject> subjects_of(const Options& o) {
+    std::vector<Subject> list;
+    for (const std::string& spec : o.arguments) list.push_back(subject_of(o, spec, "", "as given", 256));
+    if (!list.empty()) return list;
+    for (const Shipped& s : kShipped) {
+        if (!o.quick || s.quick) list.push_back(subject_of(o, s.spec, s.features, s.stresses, s.most_spp));
+    }
+    return list;
+}
+
+std::string reference_key(Bench& bench, const RenderSettings& settings, int spp) {
+    const Subject& s = bench.subject();
+    const Geometry& g = *s.scene->geometry;
+    // The camera and settings stand in the command; what the scene and the program make of them shows in the bytes of the first
+    // samples, which are the same on every machine until one of the two changes.
+    RenderSettings probe = settings;
+    probe.seed = kReferenceSeed;
+    const Shot shot = bench.take(probe, 4);
+    const std::string_view bytes(reinterpret_cast<const char*>(shot.image.pixels.data()),
+                                 shot.image.pixels.size() * sizeof(glm::vec3));
+    return fmt::format("glint {}\n{}\n{} primitives, {} materials, {} lights\nfirst samples {:016x}", GLINT_VERSION,
+                       render_command(s, probe, spp), g.seen_count() + g.planes.size(), s.scene->materials.size(),
+                       s.scene->lights.size(), digest(bytes));
+}
+
+double planned_reference_seconds(Bench& bench) {
+    // Jittered ones need about four times the least, judged by the edges of common scenes.
+    const double least = static_cast<double>(kTimesSamples) * bench.subject().most_spp * bench.seconds_per_spp();
+    return least * (has_branches(bench.subject()) ? 6.0 : 5.0);
+}
+
+References references_of(Bench& bench, const Effort& effort, const std::filesystem::path& folder, bool quiet, Meter& meter,
+                         Table& table) {
+    const Subject& subject = bench.subject();
+    // What the best curves will reach, told without a reference.
+    const auto least_error = [&](std::initializer_list<SamplerKind> kinds, int spp) {
+        double least = 1.0e300;
+        for (const SamplerKind kind : kinds) {
+            RenderSettings s = reference_settings(subject, kind, false);
+            s.seed = subject.seed;
+            const Image a = bench.take(s, spp).image;
+            ++s.seed;
+            least = std::min(least, relative_error_of_pair(a, bench.take(s, spp).image));
+        }
+        return least;
+    };
+    const auto get = [&](const char* name, SamplerKind sampler, bool deep, double judged) {
+        const RenderSettings settings = reference_settings(subject, sampler, deep);
+        const int spp = replicate_spp(subject);
+        const std::filesystem::path path =
+            folder / fmt::format("{}-{}-{}x{}.ref", subject.file_name(), name, subject.width, subject.height);
+        const std::string key = reference_key(bench, settings, spp);
+        const auto enough = [&](const Reference& r) {
+            return r.replicates >= kReplicates && r.relative_variance() <= kWantedShare * judged;
+        };
+        std::string why;
+        std::optional<Reference> r = read_reference(path, key, why);
+        if (r && (r->width != subject.width || r->height != subject.height)) r.reset(), why = "has another size";
+        if (r && r->replicates < kMostReplicates && !enough(*r)) r.reset(), why = "is not exact enough";
+        const bool kept = r.has_value();
+        if (!why.empty() && !quiet) fmt::print(stderr, "{} {}: rendered anew\n", path.string(), why);
+        if (!r) {
+            const double one = spp * bench.seconds_per_spp();
+            r = average(
+                spp, kMostReplicates,
+                [&](int i) {
+                    meter.say(fmt::format("{}: {} reference, {} of {} or more", subject.spec, name, i + 1, kReplicates));
+                    RenderSettings s = settings;
+                    s.seed = kReferenceSeed + static_cast<std::uint64_t>(i);
+                    Image image = bench.take(s, spp).image;
+                    meter.did(one);
+                    return image;
+                },
+                enough);
+            write_reference(path, key, *r);
+        }
+        table.rows.push_back({subject.spec, name, fmt::format("{}x{}", r->width, r->height), fmt::format("{:.0f}", r->samples()),
+                              fmt::format("{:.0f}", r->samples() / subject.most_spp), short_number(r->relative_variance()),
+                              fmt::format("{:.2f} %", 100.0 * r->relative_variance() / judged), kept ? "kept" : "rendered"});
+        return *r;
+    };
+    References r;
+    r.jittered =
+        get("jittered", SamplerKind::jittered, false, least_error({SamplerKind::sobol, SamplerKind::joint}, subject.most_spp));
+    r.sobol =
+        get("sobol", SamplerKind::sobol, false, least_error({SamplerKind::jittered, SamplerKind::random}, subject.most_spp));
+    const int settings_spp = std::min(effort.settings_most, subject.most_spp);
+    r.deep = has_branches(subject)
+                 ? get("deep", SamplerKind::jittered, true, least_error({SamplerKind::sobol, SamplerKind::joint}, settings_spp))
+                 : r.jittered;
+    // The two families must agree within their errors; that they do is a row of its own.
+    double off = 0.0;
+    for (std::size_t i = 0; i < r.sobol.mean.size(); ++i) {
+        for (int c = 0; c < 3; ++c) {
+            const double d = r.jittered.mean[i][c] - r.sobol.mean[i][c];
+            off += d * d / relative_scale(r.sobol.mean[i][c]);
+        }
+    }
+    off /= 3.0 * static_cast<double>(r.sobol.mean.size());
+    const double expected = r.jittered.relative_variance() + r.sobol.relative_variance();
+    table.rows.push_back({subject.spec, "jittered against sobol", "", "", "", short_number(off),
+                          fmt::format("{:.2f} of what their errors explain", expected > 0.0 ? off / expected : 0.0), ""});
+    return r;
+}
+
+}  // namespace glint::chart
