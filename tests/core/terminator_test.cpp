@@ -223,6 +223,18 @@ TEST(Terminator, S_TRM_01_SameBitsFromEveryInstructionSetAndAccelerator) {
     });
 }
 
+TEST(Terminator, S_TRM_01_ScalingByAPowerOfTwoKeepsEveryBit) {
+    const auto scaled = [](float size) {
+        SceneBuilder b;
+        const auto at = [size](glm::dvec3 p) { return size * glm::vec3(p); };
+        add_round_mesh(b, kRing, 24, 12, b.add_material(matte(1.0f)), at);
+        b.scene().lights = {point_light(size * kLamp), point_light(size * 200.0f * kLamp)};
+        return render(b.finish(), camera_at(size * glm::vec3(0, 2.6f, 4.0f), {0, 0, 0}, 36.0f), centred(), {96, 96}).image;
+    };
+    const Image expected = scaled(1.0f);
+    for (const float size : {0x1p-20f, 0x1p-3f, 0x1p20f}) EXPECT_TRUE(same_bits(expected, scaled(size))) << size;
+}
+
 // Of an instance that is turned, mirrored and stretched: wherever the normal faces the lamp, a convex body is lit.
 TEST(Terminator, S_TRM_01_AStretchedInstanceHasNoStaircase) {
     for (const bool mirrored : {false, true}) {
