@@ -139,7 +139,7 @@ Reference::Reference(const Options& options, int width, int height)
                                  stored_.image.height, width, height));
 }
 
-Reference::Verdict Reference::check(const Image& rendered, const DisplaySettings& display, nlohmann::json& stats) const {
+StoredImage Reference::like_stored(const Image& rendered, const DisplaySettings& display) const {
     StoredImage picture{rendered, stored_.radiance};
     if (!stored_.radiance) {
         const Image8 shown = to_display(rendered, display);
@@ -147,6 +147,15 @@ Reference::Verdict Reference::check(const Image& rendered, const DisplaySettings
             picture.image.pixels[i] = glm::vec3(shown.rgb[3 * i], shown.rgb[3 * i + 1], shown.rgb[3 * i + 2]) / 255.0f;
         }
     }
+    return picture;
+}
+
+double Reference::relrmse(const Image& rendered, const DisplaySettings& display) const {
+    return std::sqrt(error_metrics(like_stored(rendered, display).image, stored_.image).relmse);
+}
+
+Reference::Verdict Reference::check(const Image& rendered, const DisplaySettings& display, nlohmann::json& stats) const {
+    const StoredImage picture = like_stored(rendered, display);
     Comparison c{error_metrics(picture.image, stored_.image), {}};
     if (options_.metric == Metric::flip) c.flip = flip_of(picture, stored_);
     stats["reference"] = values(c, options_);

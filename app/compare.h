@@ -29,9 +29,13 @@ public:
     };
     // `rendered` holds radiance; against a reference of display bytes it is taken as it is displayed. Adds "reference" to
     // `stats`: file, metric, threshold, within and all values.
+    // Root mean relative squared error: what error estimates are about.
+    [[nodiscard]] double relrmse(const Image& rendered, const DisplaySettings& display) const;
     [[nodiscard]] Verdict check(const Image& rendered, const DisplaySettings& display, nlohmann::json& stats) const;
 
 private:
+    [[nodiscard]] StoredImage like_stored(const Image& rendered, const DisplaySettings& display) const;
+
     const Options& options_;
     StoredImage stored_;
 };

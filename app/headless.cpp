@@ -13,7 +13,10 @@
 #include <nlohmann/json.hpp>
 
 #include "accel/isa.h"
+#include "app/budget.h"
 #include "app/compare.h"
+#include "app/convergence.h"
+#include "app/error_bar.h"
 #include "app/picture_format.h"
 #include "core/accelerator_cache.h"
 #include "core/image.h"
@@ -74,14 +77,14 @@ void apply_crop(Frame& frame, const Options& o) {
 class ProgressLine {
 public:
     ProgressLine(bool quiet, int spp) : terminal_(isatty(STDERR_FILENO) != 0), quiet_(quiet), spp_(spp) {}
-    void show(const Progress& p) {
+    void show(const Progress& p, const Renderer& renderer) {
         if (quiet_ || p.seconds < next_) return;
         next_ = p.seconds + (terminal_ ? 0.2 : 5.0);
         if (p.seconds < 1.0) return;
-        std::fputs(fmt::format("{}{}-{} of {} spp, {:.1f} s, {:.2f} Mrays/s{}", terminal_ ? "\r" : "", p.spp_min, p.spp_max, spp_,
-                               p.seconds, static_cast<double>(p.rays.total()) / p.seconds * 1e-6, terminal_ ? "  " : "\n")
-                       .c_str(),
-                   stderr);
+        const std::string error = error_text(renderer.error());
+        fmt::print(stderr, "{}{}-{} of {} spp, {:.1f} s, {:.2f} Mrays/s{}{}{}", terminal_ ? "\r" : "", p.spp_min, p.spp_max, spp_,
+                   p.seconds, static_cast<double>(p.rays.total()) / p.seconds * 1e-6, error.empty() ? "" : ", ", error,
+                   terminal_ ? "  " : "\n");
         shown_ = true;
     }
     void end() const {
@@ -95,7 +98,7 @@ private:
 };
 
 nlohmann::json stats(const Job& job, const Options& o, const Progress& p, double build_seconds, double load_seconds,
-                     std::size_t accelerator_bytes, double error, std::string_view stopped_by) {
+                     std::size_t accelerator_bytes, const nlohmann::json& error, std::string_view stopped_by) {
     const double seconds = std::max(p.seconds, 1e-9);
     const RayCounts& r = p.rays;
     return {{"scene", job.scene->name},
@@ -123,7 +126,8 @@ nlohmann::json stats(const Job& job, const Options& o, const Progress& p, double
             {"depth_cut_weight", r.depth_cut_weight},
             {"weight_cut_branches", r.weight_cut},
             {"weight_cut_weight", r.weight_cut_weight},
-            {"relative_standard_error", error},
+            {"samples_per_s", static_cast<double>(r.camera) / seconds},
+            {"error", error},
             {"isa", name_of(isa_in_use())}};
 }
 
@@ -147,7 +151,7 @@ void print_warnings(const Scene& scene, const Options& options) {
 int run_render(const Options& o) {
     const PictureFormat format = format_of(o.output);
     const auto start = std::chrono::steady_clock::now();
-    const Job job = prepare_job(o, o.arguments.empty() ? default_scene() : o.arguments.front());
+    Job job = prepare_job(o, o.arguments.empty() ? default_scene() : o.arguments.front());
     const double load_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     print_warnings(*job.scene, o);
     Frame frame{job.scene, nullptr, job.camera, job.settings, job.width, job.height, 0, 0, job.width, job.height, job.spp};
@@ -162,16 +166,20 @@ int run_render(const Options& o) {
     const std::size_t accelerator_bytes = memory_bytes(*frame.accelerator);
 
     Renderer renderer(job.threads, false);
-    renderer.restart(frame);
-    ProgressLine line(o.quiet, job.spp);
-    Progress p = renderer.progress();
-    while (!p.finished && !p.out_of_memory && p.seconds < o.time && !stop_requested) {
-        renderer.wait(std::min(o.time, p.seconds + 0.25), &stop_requested);
-        p = renderer.progress();
-        line.show(p);
-    }
+    // An error alone is no bound on samples.
+    const Budget budget{o.noise > 0.0 && o.spp == 0 ? kMaxSamples : job.spp, o.time, o.noise, !o.convergence.empty()};
+    ProgressLine line(o.quiet, budget.spp);
+    ConvergenceTable table(o, reference ? &*reference : nullptr, job.display);
+    const std::string_view stopped_by =
+        render_within(renderer, frame, budget, stop_requested,
+                      {[&](const Progress& p) { line.show(p, renderer); },
+                       [&](const Progress& p, const ErrorEstimate& e) { table.add(p, e, renderer); }});
     line.end();
-    if (p.out_of_memory) throw std::bad_alloc();
+    const Progress p = renderer.progress();
+    const ErrorEstimate error = renderer.error();
+    if (o.noise > 0.0) job.spp = p.spp_min;
+    if (o.noise > 0.0 && !o.quiet) fmt::print(stderr, "{} at {} spp, stopped by {}\n", error_text(error), error.spp, stopped_by);
+    table.write();
 
     Image image;
     renderer.resolve(image);
@@ -184,7 +192,6 @@ int run_render(const Options& o) {
     } else {
         write_file_atomically(filled_in(o.output, job), bytes);
     }
-    const std::string_view stopped_by = stop_requested ? "signal" : p.finished ? "spp" : "time";
     nlohmann::json compared = nlohmann::json::object();
     Reference::Verdict verdict{true, 0.0};
     if (reference) {
@@ -192,9 +199,11 @@ int run_render(const Options& o) {
         print_verdict(verdict, o);
     }
     if (o.stats_json) {
+        const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+        const double target = o.noise > 0.0 ? o.noise : next_target(error);
         auto json = stats(job, o, p, cache.build_seconds(job.accelerator), load_seconds, accelerator_bytes,
-                          renderer.relative_standard_error(), stopped_by);
-        json.update(compared);
+                          error_json(error, forecast(error, p, pixels, target)), stopped_by);
+        if (reference) json.update(compared);
         (to_stdout ? std::cerr : std::cout) << json.dump(2) << "\n";
     }
     if (p.rays.non_finite > 0 && !o.quiet) {

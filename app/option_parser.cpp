@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kMaxSide = 65535;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
-constexpr int kMaxSamples = 1 << 30;
 
 constexpr std::string_view kUsage =
     "glint: a progressive CPU ray tracer you fly through, and a headless renderer with the same bits.\n\n"
@@ -113,6 +112,12 @@ public:
              [this](auto, auto v) { o_.output = v; });
         text("--time", "S", "seconds to render at most",
              [this](auto n, auto v) { o_.time = number(n, v, 0.0, 1e9, "a number of seconds"); });
+        text("--noise", "X",
+             "stop when the relative error (relRMSE) is X; looked at whenever the samples have doubled, from 32 on",
+             [this](auto n, auto v) { o_.noise = number(n, v, 1e-9, 1e9, "a relative error above 0"); });
+        text("--convergence", "FILE.csv",
+             "a row per doubling of the samples: seconds, rays, error estimate, error of --reference",
+             [this](auto, auto v) { o_.convergence = v; });
         text("--crop", "x0,x1,y0,y1", "a window, counted from the top left, x1 and y1 excluded", [this](auto n, auto v) {
             const auto parts = split(v, ",");
             if (parts.size() != 4) refuse_value(n, v, "four numbers x0,x1,y0,y1");

@@ -72,6 +72,8 @@ std::optional<Options> parse_options(const std::vector<std::string>& words) {
         case Command::render:
             expect(0, 1, "one scene");
             if (o.output.empty()) throw UsageError("glint render needs -o FILE");
+            if (o.noise > 0.0 && o.settings.sampler == SamplerKind::regular)
+                throw UsageError("--noise: the sampler 'regular' errs the same way in every pixel and cannot tell by how much");
             if (o.threshold && o.reference.empty()) throw UsageError("--reference-threshold needs --reference FILE");
             break;
         case Command::compare: expect(2, 2, "two pictures"); break;

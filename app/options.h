@@ -29,6 +29,8 @@ struct Options {
     int width = 0, height = 0;                              // 0 = the scene's
     int spp = 0;                                            // 0 = not given
     double time = std::numeric_limits<double>::infinity();  // seconds
+    double noise = 0.0;                                     // relRMSE to stop at; 0 = not given
+    std::string convergence;                                // file for a row per doubling; empty = none
     int threads = 0;                                        // 0 = all that the process may use, -1 = all but one
     std::optional<AcceleratorKind> accelerator;             // empty = auto, or what the scene says
     bool accelerator_given = false;
@@ -50,6 +52,8 @@ struct Options {
     bool quick = false;  // chart: fewer scenes, seeds and samples
     bool stats_json = false, quiet = false, verbose = false, strict = false;
 };
+
+constexpr int kMaxSamples = 1 << 30;
 
 // Parses the words after the program's name. Prints help or version itself and returns nothing then.
 [[nodiscard]] std::optional<Options> parse_options(const std::vector<std::string>& words);

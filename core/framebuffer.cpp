@@ -36,8 +36,12 @@ void Framebuffer::copy_out(std::size_t tile, std::uint64_t generation, std::vect
         sums.assign(t.rect.pixels(), PixelSum());
 }
 
-void Framebuffer::write_back(std::size_t tile, std::uint64_t generation, const std::vector<PixelSum>& sums, int samples) {
+void Framebuffer::write_back(std::size_t tile, std::uint64_t generation, const std::vector<PixelSum>& sums, int samples,
+                             const Doublings& doublings) {
     Tile& t = tiles_[tile];
+    if (t.generation != generation) t.doublings.clear();
+    t.doublings.resize(doublings_within(samples));
+    for (std::size_t k = 0; k < t.doublings.size(); ++k) t.doublings[k] += doublings[k];
     if (keep_passes_) {
         t.previous_samples = t.generation == generation ? t.samples : 0;
         t.previous.swap(t.sums);
@@ -87,23 +91,14 @@ int Framebuffer::resolve_pass(std::uint64_t generation, Image& image) const {
     return pass;
 }
 
-double Framebuffer::relative_standard_error(std::uint64_t generation) const {
-    double variance_of_mean = 0.0, total = 0.0;
-    std::size_t pixels = 0;
+Doublings Framebuffer::doublings(std::uint64_t generation, int samples) const {
+    Doublings sum{};
     for (const Tile& t : tiles_) {
-        if (t.generation != generation || t.samples < 2) continue;
-        for (const PixelSum& p : t.sums) {
-            const double n = t.samples - static_cast<double>(p.rejected);
-            if (n < 2.0) continue;
-            const double m = luminance(p.radiance) / n;
-            variance_of_mean += std::max(0.0, p.luminance2 / n - m * m) / (n - 1.0);
-            total += m;
-            ++pixels;
-        }
+        if (t.generation != generation) continue;
+        const std::size_t n = std::min(t.doublings.size(), doublings_within(samples));
+        for (std::size_t k = 0; k < n; ++k) sum[k] += t.doublings[k];
     }
-    if (pixels == 0 || !(total > 0.0)) return 0.0;
-    const auto count = static_cast<double>(pixels);
-    return std::sqrt(variance_of_mean / count) / (total / count);
+    return sum;
 }
 
 }  // namespace glint

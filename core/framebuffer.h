@@ -8,6 +8,7 @@
 
 #include <glm/glm.hpp>
 
+#include "core/error_estimate.h"
 #include "core/image.h"
 
 namespace glint {
@@ -17,8 +18,28 @@ constexpr int kPreviewBlock = 8;  // pixels a side that share one ray of the coa
 
 struct PixelSum {
     glm::dvec3 radiance{0.0};
-    double luminance2 = 0.0;     // sum of squared sample luminances, for the error estimate
-    std::uint32_t rejected = 0;  // samples left out of the sums because they were not finite
+    glm::dvec3 before{0.0};      // the mean at the last power of two
+    std::uint32_t taken = 0;     // samples
+    std::uint32_t rejected = 0;  // of them left out of the sums because they were not finite
+
+    [[nodiscard]] glm::dvec3 mean() const {
+        return taken > rejected ? radiance / static_cast<double>(taken - rejected) : glm::dvec3(0.0);
+    }
+    // The next sample, unless it is null, which stands for one that is rejected. Notes what each doubling changes.
+    void add(const glm::vec3* sample, Doublings& doublings) {
+        if (sample != nullptr)
+            radiance += glm::dvec3(*sample);
+        else
+            ++rejected;
+        if (std::has_single_bit(++taken)) note_doubling(doublings);
+    }
+
+private:
+    void note_doubling(Doublings& doublings) {
+        const glm::dvec3 now = mean();
+        if (taken > 1) doublings[static_cast<std::size_t>(std::countr_zero(taken)) - 1].add(relative_change(now, before));
+        before = now;
+    }
 };
 
 struct TileRect {
@@ -41,7 +62,9 @@ public:
     [[nodiscard]] int samples(std::size_t tile, std::uint64_t generation) const;
     // The tile's sums, row by row; zeros when it has none of this generation.
     void copy_out(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums) const;
-    void write_back(std::size_t tile, std::uint64_t generation, const std::vector<PixelSum>& sums, int samples);
+    // doublings: those between the samples that the tile had and `samples`.
+    void write_back(std::size_t tile, std::uint64_t generation, const std::vector<PixelSum>& sums, int samples,
+                    const Doublings& doublings = {});
     // One colour per preview block of the tile, row by row.
     void write_preview(std::size_t tile, std::uint64_t generation, const std::vector<glm::vec3>& blocks);
 
@@ -51,9 +74,8 @@ public:
     // Sets the image to the last pass that every tile has completed, so that each pixel has the same number of samples.
     // Returns that number; 0, and the image untouched, when there is none.
     [[nodiscard]] int resolve_pass(std::uint64_t generation, Image& image) const;
-    // Root mean square over pixels of the standard error of the mean, divided by the picture's mean; luminance.
-    // From the plain sample variance, so it is too large for stratified samplers, never too small on average.
-    [[nodiscard]] double relative_standard_error(std::uint64_t generation) const;
+    // The tiles' doublings, summed in order; `samples` is how many each pixel has at least.
+    [[nodiscard]] Doublings doublings(std::uint64_t generation, int samples) const;
 
 private:
     struct Tile {
@@ -61,14 +83,13 @@ private:
         std::uint64_t generation = 0, preview_generation = 0;
         int samples = 0, previous_samples = 0;
         std::vector<PixelSum> sums, previous;  // previous: before the last batch
+        std::vector<Doubling> doublings;
         std::vector<glm::vec3> preview;
     };
     TileRect area_;
     bool keep_passes_;
     std::vector<Tile> tiles_;
 };
-
-[[nodiscard]] inline double luminance(glm::dvec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 // Blocks per row of a tile's preview.
 [[nodiscard]] inline int preview_blocks(int pixels) { return (pixels + kPreviewBlock - 1) / kPreviewBlock; }

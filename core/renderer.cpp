@@ -2,162 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
-#include <condition_variable>
-#include <mutex>
-#include <new>
 #include <stdexcept>
 #include <utility>
 
-#include "core/framebuffer.h"
-#include "core/render_plan.h"
-#include "core/threads.h"
-#include "core/tile_kernels.h"
-#include "core/tile_queue.h"
+#include "core/renderer_state.h"
 
 namespace glint {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// Samples a pixel gets per visit at most; many are faster, since they are alike. A viewer's visits double the samples, a
-// file's, which only whoever interrupts it looks at, have them eightfold.
-constexpr int kMaxBatch = 32;
-
-// A frame with everything derived from it once, before any worker sees it.
-struct Order {
-    Frame frame;
-    RenderPlan plan;
-    Camera camera;
-    std::uint64_t generation = 0;
-};
-
-}  // namespace
-
-struct Renderer::State {
-    const bool preview;
-    std::atomic<std::uint64_t> generation{0};
-
-    mutable std::mutex mutex;  // guards everything below
-    mutable std::condition_variable work, change;
-    std::shared_ptr<const Order> order;
-    std::shared_ptr<Framebuffer> framebuffer;
-    TileQueue queue;
-    std::uint64_t queue_generation = 0;
-    std::size_t previews_left = 0, tiles_left = 0;
-    bool paused = false, stopping = false;
-    std::uint64_t failed_generation = 0;  // of the frame that memory did not suffice for
-    RayCounts counts;
-    Clock::time_point running_since;
-    double seconds_before = 0.0;  // until the last pause or the finish
-    bool running = false;
-
-    explicit State(bool with_preview) : preview(with_preview) {}
-
-    [[nodiscard]] double seconds() const {
-        return seconds_before + (running ? std::chrono::duration<double>(Clock::now() - running_since).count() : 0.0);
-    }
-    void run_clock(bool on) {
-        if (on == running) return;
-        if (on)
-            running_since = Clock::now();
-        else
-            seconds_before = seconds();
-        running = on;
-    }
-    [[nodiscard]] bool failed() const { return order != nullptr && failed_generation == order->generation; }
-    // Every pixel shows this frame. The last samples may overtake a preview whose worker was held up.
-    [[nodiscard]] bool covered() const { return previews_left == 0 || finished(); }
-    [[nodiscard]] bool finished() const {
-        return order != nullptr && queue_generation == order->generation && tiles_left == 0 && !failed();
-    }
-
-    // The first worker to look at a new order deals its tiles out; restart() itself stays O(1).
-    void deal() {
-        const Frame& f = order->frame;
-        const TileRect area{f.x0, f.y0, f.x1, f.y1};
-        if (framebuffer == nullptr || framebuffer->area() != area) framebuffer = std::make_shared<Framebuffer>(area, preview);
-        const std::size_t n = framebuffer->tile_count();
-        queue.deal(n, preview);
-        previews_left = preview ? n : 0;
-        tiles_left = n;
-        queue_generation = order->generation;
-    }
-
-    // A worker's life: all of it but for frames that are too large.
-    void run_worker() {
-        if (preview) lower_priority();
-        std::uint64_t current = 0;
-        for (bool stopped = false; !stopped;) {
-            try {
-                work_loop(current);
-                stopped = true;
-            } catch (const std::bad_alloc&) {
-                give_up(current);
-            }
-        }
-    }
-    // Returns when stopping; `current` is the generation of the frame it works on.
-    void work_loop(std::uint64_t& current);
-    // The frame can never be finished; the next one may be smaller.
-    void give_up(std::uint64_t generation_given_up) {
-        const std::lock_guard lock(mutex);
-        failed_generation = generation_given_up;
-        if (!failed()) return;
-        queue.clear();
-        queue_generation = failed_generation;
-        run_clock(false);
-        change.notify_all();
-    }
-};
-
-void Renderer::State::work_loop(std::uint64_t& current) {
-    std::vector<PixelSum> sums;
-    std::vector<glm::vec3> blocks;
-    Workspace workspace;
-    std::unique_lock lock(mutex);
-    for (;;) {
-        work.wait(lock, [this] {
-            return stopping || (order != nullptr && !paused && (queue_generation != order->generation || !queue.empty()));
-        });
-        if (stopping) return;
-        current = order->generation;
-        if (queue_generation != order->generation) {
-            deal();
-            work.notify_all();
-        }
-        TileTask task = queue.take();
-        const std::shared_ptr<const Order> o = order;
-        const int first = task.samples;
-        const int last = std::min(o->frame.spp, first + std::clamp(preview ? first : 7 * first, 1, kMaxBatch));
-        const TileRect rect = framebuffer->tile_rect(task.tile);
-        if (!task.preview) framebuffer->copy_out(task.tile, o->generation, sums);
-        lock.unlock();
-
-        workspace.counts = RayCounts();
-        const KernelInput input{*o->frame.scene, *o->frame.accelerator, o->plan, o->camera, generation, o->generation};
-        const bool done = task.preview ? render_preview(input, rect, blocks, workspace)
-                                       : render_tile(input, rect, first, last, sums, workspace);
-        lock.lock();
-        // A newer order makes this result worthless; it is dropped here and nowhere else.
-        if (!done || o->generation != order->generation || failed()) continue;
-        if (task.preview) {
-            framebuffer->write_preview(task.tile, o->generation, blocks);
-            if (--previews_left == 0) change.notify_all();
-            continue;
-        }
-        counts += workspace.counts;
-        framebuffer->write_back(task.tile, o->generation, sums, last);
-        if (last < o->frame.spp) {
-            task.samples = last;
-            queue.give_back(task);
-            if (queue.size() == 1) work.notify_one();
-        } else if (--tiles_left == 0) {
-            run_clock(false);
-            change.notify_all();
-        }
-    }
-}
 
 Renderer::Renderer(int threads, bool preview) : state_(std::make_unique<State>(preview)) {
     workers_.reserve(static_cast<std::size_t>(std::max(1, threads)));
@@ -224,6 +74,24 @@ bool Renderer::replace_accelerator(std::uint64_t generation, std::shared_ptr<con
     return order == nullptr;
 }
 
+bool Renderer::extend(std::uint64_t generation, int spp) {
+    State& s = *state_;
+    std::shared_ptr<const Order> old;  // freed outside the lock
+    {
+        const std::lock_guard lock(s.mutex);
+        if (s.order == nullptr || s.order->generation != generation || s.failed()) return false;
+        old = s.order;
+        if (spp <= old->frame.spp || !old->plan.stochastic()) return true;
+        auto longer = std::make_shared<Order>(*old);
+        longer->frame.spp = spp;
+        s.order = std::move(longer);
+        s.take_up_again(old->frame.spp);
+        s.run_clock(!s.paused);
+    }
+    s.work.notify_all();
+    return true;
+}
+
 void Renderer::set_paused(bool paused) {
     {
         const std::lock_guard lock(state_->mutex);
@@ -245,20 +113,29 @@ Progress Renderer::progress() const {
     if (s.queue_generation != s.order->generation || p.out_of_memory) return p;
     p.finished = s.finished();
     p.preview_complete = s.covered();
-    p.spp_min = s.order->frame.spp;
-    for (std::size_t i = 0; i < s.framebuffer->tile_count(); ++i) {
-        const int n = s.framebuffer->samples(i, p.generation);
-        p.spp_min = std::min(p.spp_min, n);
-        p.spp_max = std::max(p.spp_max, n);
-    }
+    p.spp_min = s.least_samples_so_far();
+    for (std::size_t i = 0; i < s.framebuffer->tile_count(); ++i)
+        p.spp_max = std::max(p.spp_max, s.framebuffer->samples(i, p.generation));
     if (!s.preview) p.preview_complete = p.spp_min > 0;
     return p;
 }
 
-double Renderer::relative_standard_error() const {
+ErrorEstimate Renderer::error() const {
     const State& s = *state_;
-    const std::lock_guard lock(s.mutex);
-    return s.framebuffer != nullptr ? s.framebuffer->relative_standard_error(s.order->generation) : 0.0;
+    std::unique_lock lock(s.mutex);
+    ErrorEstimate e;
+    if (s.order == nullptr || s.queue_generation != s.order->generation || s.failed()) return e;
+    const std::shared_ptr<const Order> order = s.order;
+    const int samples = s.least_samples_so_far();
+    if (!order->plan.stochastic()) {
+        if (samples > 0) e.kind = ErrorEstimate::Kind::exact;
+        e.spp = samples;
+        return e;
+    }
+    const Doublings doublings = s.framebuffer->doublings(order->generation, samples);
+    const std::size_t pixels = s.framebuffer->area().pixels();
+    lock.unlock();
+    return estimate_error(doublings, pixels, samples, order->plan.sampler);
 }
 
 bool Renderer::resolve(Image& image) const {

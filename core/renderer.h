@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "accel/accelerator.h"
+#include "core/error_estimate.h"
 #include "core/image.h"
 #include "core/ray_counts.h"
 #include "core/settings.h"
@@ -52,6 +53,9 @@ public:
     std::uint64_t restart(Frame frame);
     // Goes on with another accelerator of the same scene if `generation` is still the frame's: same bits, so nothing restarts.
     bool replace_accelerator(std::uint64_t generation, std::shared_ptr<const AnyAccelerator> accelerator);
+    // Goes on to `spp` samples a pixel if `generation` is still the frame's, also when it is finished: the bits are those of a
+    // frame that asked for as many from the start. Never takes samples away. False for another frame, or one that is too large.
+    bool extend(std::uint64_t generation, int spp);
     void set_paused(bool paused);
     [[nodiscard]] Progress progress() const;
     // The mean of the samples so far as linear radiance, at the frame's crop size. Where a pixel has no sample yet, its
@@ -60,9 +64,8 @@ public:
     // The last pass that covers the whole picture, every pixel with the same number of samples: what a screenshot takes.
     // Returns that number; 0, and `image` untouched, while there is none. Only with a preview.
     int resolve_pass(Image& image) const;
-    // Root mean square of the pixels' standard errors over the picture's mean, from the plain sample variance: an upper
-    // bound for stratified samplers. 0 below two samples a pixel.
-    [[nodiscard]] double relative_standard_error() const;
+    // How far the picture is from its limit, for the number of samples that every pixel has at least.
+    [[nodiscard]] ErrorEstimate error() const;
     // Waits until finished, out of memory or until `deadline` seconds of rendering passed or *stop is true (stop may be null).
     void wait(double deadline_seconds, const std::atomic<bool>* stop) const;
     [[nodiscard]] int threads() const { return static_cast<int>(workers_.size()); }

@@ -161,15 +161,10 @@ bool run(const Job& job) {
     if (job.sums == nullptr) return run_preview<A, kParts>(job);
     const auto take = [&](std::size_t pixel, std::span<const glm::vec3> light) {
         PixelSum sum = (*job.sums)[pixel];  // a copy, which stays in registers
-        for (const glm::vec3 c : light) {
-            if (!finite(c)) {
-                ++job.work.counts.non_finite;
-                ++sum.rejected;
-                continue;
-            }
-            const double l = luminance(glm::dvec3(c));
-            sum.radiance += glm::dvec3(c);
-            sum.luminance2 += l * l;
+        for (const glm::vec3& c : light) {
+            const bool good = finite(c);
+            if (!good) ++job.work.counts.non_finite;
+            sum.add(good ? &c : nullptr, job.work.doublings);
         }
         (*job.sums)[pixel] = sum;
     };

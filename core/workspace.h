@@ -8,6 +8,7 @@
 #include "accel/ray_batch.h"
 #include "core/branch_stacks.h"
 #include "core/direct_light.h"
+#include "core/error_estimate.h"
 #include "core/glass.h"
 #include "core/medium_stack.h"
 #include "core/ray_counts.h"
@@ -51,6 +52,7 @@ struct alignas(64) Lanes {
 
 struct Workspace {
     RayCounts counts;
+    Doublings doublings{};  // what doubling the samples changed, for the error estimate
     ShadowOrigins shadow_origins;
     std::uint64_t prepared_for = ~std::uint64_t{0};  // the generation whose lights they are of
     BranchStacks stacks;

@@ -16,13 +16,12 @@ template <class Sample>
 Framebuffer one_pixel(int n, const Sample& sample) {
     Framebuffer framebuffer({0, 0, 1, 1});
     std::vector<PixelSum> sums(1);
+    Doublings doublings{};
     for (int i = 0; i < n; ++i) {
         const glm::vec3 c(sample(i));
-        const double l = luminance(glm::dvec3(c));
-        sums[0].radiance += glm::dvec3(c);
-        sums[0].luminance2 += l * l;
+        sums[0].add(&c, doublings);
     }
-    framebuffer.write_back(0, 1, sums, n);
+    framebuffer.write_back(0, 1, sums, n, doublings);
     return framebuffer;
 }
 
@@ -40,14 +39,16 @@ TEST(Accumulation, S_ACC_01_AConstantStaysItselfOverMillionsOfSamples) {
     }
 }
 
-TEST(Accumulation, S_ACC_02_AVarianceOnAHighPedestal) {
-    // 10^4 + {0, 1}: the variance is 1/4, so the standard error over the mean is 0.5 / sqrt(n - 1) / 10000.5.
-    for (const int n : {2, 1000, 1000000}) {
-        const Framebuffer framebuffer = one_pixel(n, [](int i) { return 1e4f + static_cast<float>(i % 2); });
-        const double error = framebuffer.relative_standard_error(1) * 10000.5;
-        EXPECT_NEAR(error * error * (n - 1), 0.25, 1e-6) << n;
+TEST(Accumulation, S_ACC_02_ASpreadOnAHighPedestal) {
+    // 10^4 + {0 in the first half, 1 in the second}: the last doubling moves the mean by 1/2, those before not at all.
+    for (const int n : {2, 1024, 1 << 20}) {
+        const Framebuffer framebuffer = one_pixel(n, [n](int i) { return 1e4f + static_cast<float>(2 * i >= n); });
+        const Doublings doublings = framebuffer.doublings(1, n);
+        const std::size_t last = doublings_within(n) - 1;
+        EXPECT_NEAR(doublings[last].change * (10000.5 * 10000.5 + 0.01), 0.25, 1e-6) << n;
+        for (std::size_t k = 0; k < last; ++k) EXPECT_EQ(doublings[k].change, 0.0) << n;
     }
-    EXPECT_EQ(one_pixel(1, [](int) { return 1.0f; }).relative_standard_error(1), 0.0);
+    EXPECT_EQ(one_pixel(1, [](int) { return 1.0f; }).doublings(1, 1), Doublings{});
 }
 
 // A 4 x 4 picture of a sky in which a tiny ball stands in the way of one sample of pixel (2, 1).
@@ -135,19 +136,22 @@ TEST(Framebuffer, TilesCoverTheAreaOnce) {
 TEST(Framebuffer, ATileOfAnOldGenerationCountsAsEmpty) {
     Framebuffer framebuffer({0, 0, 16, 16});
     std::vector<PixelSum> sums(256);
-    for (PixelSum& s : sums) s.radiance = glm::dvec3(6.0), s.luminance2 = 40.0;
-    framebuffer.write_back(0, 7, sums, 2);
+    for (PixelSum& s : sums) s.radiance = glm::dvec3(6.0), s.taken = 2;
+    Doublings doublings{};
+    doublings[0].add(0.5);
+    framebuffer.write_back(0, 7, sums, 2, doublings);
     EXPECT_EQ(framebuffer.samples(0, 7), 2);
     EXPECT_EQ(framebuffer.samples(0, 8), 0);
-    EXPECT_GT(framebuffer.relative_standard_error(7), 0.0);
-    EXPECT_EQ(framebuffer.relative_standard_error(8), 0.0);
+    EXPECT_EQ(framebuffer.doublings(7, 2)[0].change, 0.5);
+    EXPECT_EQ(framebuffer.doublings(7, 1)[0].change, 0.0);
+    EXPECT_EQ(framebuffer.doublings(8, 2)[0].change, 0.0);
     std::vector<PixelSum> copy;
     framebuffer.copy_out(0, 7, copy);
     EXPECT_EQ(copy[5].radiance.x, 6.0);
     framebuffer.copy_out(0, 8, copy);
     ASSERT_EQ(copy.size(), 256u);
     EXPECT_EQ(copy[5].radiance.x, 0.0);
-    EXPECT_EQ(copy[5].luminance2, 0.0);
+    EXPECT_EQ(copy[5].taken, 0u);
     Image image = blank(16, 16, 0.25f);
     framebuffer.resolve(0, 8, image);
     EXPECT_EQ(image.at(3, 3).x, 0.25f);

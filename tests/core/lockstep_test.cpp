@@ -203,7 +203,7 @@ TEST(TileKernel, EveryPixelOfAnyRectangleGetsItsSamples) {
                 const PixelSum& a = whole[static_cast<std::size_t>(y * 64 + x)];
                 const PixelSum& b = sums[static_cast<std::size_t>(i)];
                 ASSERT_EQ(a.radiance, b.radiance) << x << ' ' << y;
-                ASSERT_EQ(a.luminance2, b.luminance2) << x << ' ' << y;
+                ASSERT_EQ(a.before, b.before) << x << ' ' << y;
             }
         }
     }

@@ -1,0 +1,207 @@
+#include "core/error_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/sampler.h"
+
+namespace glint {
+namespace {
+
+constexpr double kNinetyFive = 1.96, kCautious = 3.0;
+// Rare events have to show in the picture as a whole and, so that edges have been seen from both sides, in each pixel.
+constexpr int kLeastSamples = 32;
+constexpr std::size_t kLeastPictureSamples = std::size_t{1} << 16;
+
+// By what the next doublings' changes shrink, as the logarithm of the ratio of two in a row: at a slope of 0.5 (random, and no
+// scrambled net is worse in the long run) and 1.5 (smooth integrands, Owen 1997). In between, before there is evidence: the
+// built-in scenes have 0.35 ... 0.5.
+const double kLogSlowest = std::log(0.5), kLogFastest = std::log(0.125);
+const double kLogUsual = std::log(0.4);
+constexpr double kUsualSpread = 0.2;
+// The ratio drifts: as samples grow, the parts of a picture that converge slowly make up more of what is left.
+constexpr double kDrift = 0.07;
+// While a picture is noisy, changes are weighed by noisy means; the error is wrong by up to about as many times its own square
+// (measured: tests/bench/error_bar).
+constexpr double kNoisyWeights = 3.0;
+// Changes that are looked at. Two tell the ratio badly, four tell an old one.
+constexpr std::size_t kWindow = 3;
+
+// Mean squared error and its spread at a power of two.
+struct Level {
+    // z spreads above the mean squared error.
+    [[nodiscard]] double upper(double z) const { return mse * most * std::exp(z * spread); }
+
+    double mse = 0.0;
+    double spread = 0.0;             // standard deviation of log(mse)
+    double least = 1.0, most = 1.0;  // limits that hold beside the spread, as factors of mse
+    double ratio = 0.5;              // of the next doubling's change to the last one's
+};
+
+// The last changes, newest first, as means over pixels, and their relative variances. Pixels are independent, so the variance
+// of their sum is at most the sum of squares.
+struct Window {
+    std::array<double, kWindow> change{}, variance{};
+    std::size_t size = 0;
+
+    Window(std::span<const Doubling> doublings, std::size_t limit, double pixels)
+        : size(std::min({kWindow, limit, doublings.size()})) {
+        for (std::size_t i = 0; i < size; ++i) {
+            const Doubling& d = doublings[doublings.size() - 1 - i];
+            change[i] = d.change / pixels;
+            variance[i] = d.change2 / (pixels * pixels);
+        }
+    }
+};
+
+// What is still to come after the newest change when each is `ratio` times the one before. `told` is the share of the ratio
+// that the changes themselves have told, and `unsure` the spread of the logarithm of the rest.
+Level extrapolate(const Window& w, double ratio, double told, double unsure) {
+    double newer = 0.0, older = 0.0, level = 0.0, lever = 0.0, power = 1.0;
+    const auto n = static_cast<double>(w.size);
+    for (std::size_t i = 0; i < w.size; ++i, power *= ratio) {
+        if (i + 1 < w.size) newer += w.change[i];
+        if (i > 0) older += w.change[i];
+        level += power * w.change[i] / n;
+        lever += static_cast<double>(i) * power * w.change[i] / n;
+    }
+    Level out;
+    out.ratio = ratio;
+    out.mse = level * ratio / (1.0 - ratio);
+    if (!(level > 0.0)) return out;
+    // Of log(mse) by log(ratio), then by each change (delta method).
+    const double by_ratio = lever / level + 1.0 / (1.0 - ratio);
+    double variance = by_ratio * by_ratio * unsure * unsure;
+    power = 1.0;
+    for (std::size_t i = 0; i < w.size; ++i, power *= ratio) {
+        double by_change = power / (n * level);
+        if (told > 0.0) by_change += by_ratio * told * ((i + 1 < w.size ? 1.0 / newer : 0.0) - (i > 0 ? 1.0 / older : 0.0));
+        variance += by_change * by_change * w.variance[i];
+    }
+    out.spread = std::hypot(std::sqrt(variance), kNoisyWeights * std::min(1.0, out.mse));
+    return out;
+}
+
+// Independent samples, or blocks of them: the error falls as N^-1/2, for certain.
+Level independent(const Window& w) { return extrapolate(w, 0.5, 0.0, 0.0); }
+
+// The ratio is what the changes say, weighed against what is usual by how well they say it.
+Level scrambled(const Window& w) {
+    double newer = 0.0, older = 0.0, variance = 0.0;
+    for (std::size_t i = 0; i < w.size; ++i) {
+        if (i + 1 < w.size) newer += w.change[i];
+        if (i > 0) older += w.change[i];
+    }
+    double told = 0.0, ratio = kLogUsual;
+    if (newer > 0.0 && older > 0.0) {
+        for (std::size_t i = 0; i < w.size; ++i) {
+            const double by_change = (i + 1 < w.size ? 1.0 / newer : 0.0) - (i > 0 ? 1.0 / older : 0.0);
+            variance += by_change * by_change * w.variance[i];
+        }
+        told = kUsualSpread * kUsualSpread / (kUsualSpread * kUsualSpread + variance);
+        ratio += told * (std::log(newer / older) - kLogUsual);
+    }
+    ratio = std::exp(std::clamp(ratio, kLogFastest, kLogSlowest));
+    return extrapolate(w, ratio, told, std::hypot((1.0 - told) * kUsualSpread, kDrift));
+}
+
+// Up to a whole block of strata a pixel has drawn cells without replacement (Cochran 1977, section 2.6): with S = what random
+// samples would have, its error lies between S (1/N - 1/64), all of it between cells, and S/N, all of it within them. Mostly it
+// is between them, by how much no sample tells: the interval has both ends.
+Level within_a_block(const Window& w, double samples) {
+    constexpr double kBlock = kStrata * kStrata, kUsuallyBetween = 0.75;
+    Level out = independent(w);
+    const double left = 1.0 - samples / kBlock;
+    const double middle = 1.0 - kUsuallyBetween * samples / kBlock;
+    out.mse *= middle;
+    out.least = left / middle;
+    out.most = 1.0 / middle;
+    return out;
+}
+
+Level level_at(std::span<const Doubling> doublings, double pixels, SamplerKind sampler) {
+    constexpr std::size_t kInBlock = std::bit_width(kStrata * kStrata) - 1;
+    const std::size_t n = doublings.size();
+    switch (sampler) {
+        case SamplerKind::random: return independent({doublings, n, pixels});
+        case SamplerKind::jittered:
+            if (n > kInBlock) return independent({doublings, n - kInBlock, pixels});
+            return within_a_block({doublings, n, pixels}, std::ldexp(1.0, static_cast<int>(n)));
+        default: return scrambled({doublings, n, pixels});
+    }
+}
+
+// What no net exceeds by much, and tells better in small pictures, whose changes tell a ratio badly.
+Level ceiling_at(std::span<const Doubling> doublings, double pixels, SamplerKind sampler, const Level& level) {
+    const bool net = sampler != SamplerKind::random && sampler != SamplerKind::jittered;
+    return net ? independent({doublings, doublings.size(), pixels}) : level;
+}
+
+// Between powers of two a sequence may be worse than at the last one. N samples are blocks of powers of two; a block of n and any
+// later part of its twin have the covariance 2 MSE(2n) - MSE(n), since the twins' mean has MSE(2n). Returns MSE(N) over the one
+// at the greatest power of two in N.
+double between_doublings(std::span<const Doubling> doublings, double pixels, const Level& level, int spp) {
+    std::array<double, kDoublings + 1> mse{};  // at 2^k
+    const std::size_t top = doublings.size();
+    mse[top] = level.mse;
+    mse[top + 1] = level.mse * level.ratio;
+    for (std::size_t k = top; k-- > 0;) mse[k] = mse[k + 1] + doublings[k].change / pixels;
+    const auto n = static_cast<std::uint32_t>(spp);
+    double sum = 0.0;
+    std::uint32_t later = n;
+    for (std::size_t k = top + 1; k-- > 0;) {
+        const std::uint32_t block = 1u << k;
+        if ((n & block) == 0) continue;
+        later -= block;
+        const auto size = static_cast<double>(block);
+        sum += size * size * mse[k] + 2.0 * size * static_cast<double>(later) * (2.0 * mse[k + 1] - mse[k]);
+    }
+    return std::max(0.0, sum / (static_cast<double>(n) * n)) / level.mse;
+}
+
+}  // namespace
+
+ErrorEstimate estimate_error(std::span<const Doubling> doublings, std::size_t pixels, int spp, SamplerKind sampler) {
+    ErrorEstimate e;
+    e.spp = spp;
+    const std::size_t known = std::min({doublings.size(), doublings_within(spp), kDoublings - 1});
+    // The lattice is the same in every pixel and with every seed; what it misses, no sample shows.
+    if (sampler == SamplerKind::regular || known == 0 || pixels == 0) return e;
+    doublings = doublings.first(known);
+    const auto count = static_cast<double>(pixels);
+    const Level level = level_at(doublings, count, sampler);
+    e.kind = ErrorEstimate::Kind::estimated;
+    e.slope = -0.5 * std::log2(level.ratio);
+    if (!(level.mse > 0.0)) return e;
+    const bool doubled = std::has_single_bit(static_cast<std::uint32_t>(spp));
+    const double here = doubled ? 1.0 : between_doublings(doublings, count, level, spp);
+    const Level ceiling = ceiling_at(doublings, count, sampler, level);
+    const auto upper = [&](double z) { return std::sqrt(here * std::min(level.upper(z), ceiling.upper(z))); };
+    e.relrmse = std::sqrt(here * level.mse);
+    e.low = std::sqrt(here * level.mse * level.least * std::exp(-kNinetyFive * level.spread));
+    e.high = upper(kNinetyFive);
+    e.cautious = upper(kCautious);
+    return e;
+}
+
+int least_samples(std::size_t pixels) {
+    const std::size_t each = (kLeastPictureSamples + pixels - 1) / std::max<std::size_t>(1, pixels);
+    return std::max(kLeastSamples, static_cast<int>(std::bit_ceil(each)));
+}
+
+bool error_reached(const ErrorEstimate& e, std::size_t pixels, double target) {
+    if (e.kind == ErrorEstimate::Kind::exact) return true;
+    return e.kind == ErrorEstimate::Kind::estimated && std::has_single_bit(static_cast<std::uint32_t>(e.spp)) &&
+           e.spp >= least_samples(pixels) && e.cautious <= target;
+}
+
+int predicted_samples(const ErrorEstimate& e, std::size_t pixels, double target) {
+    if (e.kind != ErrorEstimate::Kind::estimated || !(target > 0.0)) return e.kind == ErrorEstimate::Kind::exact ? e.spp : 0;
+    const double times = std::max(1.0, std::pow(e.cautious / target, 1.0 / e.slope));
+    const double wanted = std::max(times * e.spp, static_cast<double>(least_samples(pixels)));
+    if (!(wanted <= 0x1p30)) return 0;
+    return static_cast<int>(std::bit_ceil(static_cast<std::uint32_t>(std::ceil(wanted))));
+}
+
+}  // namespace glint

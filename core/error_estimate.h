@@ -1,0 +1,81 @@
+// How far a picture still is from its limit, told by how much each doubling of its samples has changed it; and when to stop.
+// Knows no renderer and no picture, only the sums below. Errors are relRMSE: the root of mean (I-truth)^2 / (truth^2 + 0.01)
+// over pixels and channels, as in error_metrics.h.
+// Why it works for stratified samplers too: let I(N) be a pixel's mean of N samples. Where its halves are exchangeable
+// (Owen-scrambled Sobol' at powers of two, blocks of strata, independent samples), E (I(2N) - I(N))^2 = MSE(N) - MSE(2N) exactly.
+// So MSE(N) is the sum of all changes still to come, which follow the power law that those seen so far have.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <glm/glm.hpp>
+
+#include "core/settings.h"
+
+namespace glint {
+
+// What doubling the samples did to some pixels.
+struct Doubling {
+    double change = 0.0;   // sum over pixels of relative_change()
+    double change2 = 0.0;  // sum of their squares
+
+    void add(double c) {
+        change += c;
+        change2 += c * c;
+    }
+    void operator+=(const Doubling& other) {
+        change += other.change;
+        change2 += other.change2;
+    }
+    bool operator==(const Doubling&) const = default;
+};
+
+// [k]: from 2^k samples a pixel to 2^(k+1).
+constexpr std::size_t kDoublings = 31;
+using Doublings = std::array<Doubling, kDoublings>;
+
+// Doublings that lie within so many samples a pixel.
+[[nodiscard]] constexpr std::size_t doublings_within(int spp) {
+    return spp > 0 ? static_cast<std::size_t>(std::bit_width(static_cast<std::uint32_t>(spp))) - 1 : 0;
+}
+
+// mean over channels of (mean - before)^2 / (mean^2 + 0.01).
+[[nodiscard]] inline double relative_change(glm::dvec3 mean, glm::dvec3 before) {
+    constexpr double kRelativeFloor = 1e-2;
+    const glm::dvec3 d = mean - before, ratio = d * d / (mean * mean + kRelativeFloor);
+    return (ratio.x + ratio.y + ratio.z) / 3.0;
+}
+
+struct ErrorEstimate {
+    enum class Kind {
+        unknown,   // too few samples, or a sampler whose errors no sample tells of
+        exact,     // nothing is random
+        estimated  // the numbers below
+    };
+    Kind kind = Kind::unknown;
+    int spp = 0;                   // samples a pixel that it is for
+    double relrmse = 0.0;          // most likely
+    double low = 0.0, high = 0.0;  // 95 % interval
+    double cautious = 0.0;         // upper end at z = 3, what stopping goes by
+    double slope = 0.5;            // relrmse falls as spp^-slope from here on
+};
+
+// For a picture of `pixels` pixels whose samplers were of that kind, each with `spp` samples; doublings: sums over all of
+// them, at least doublings_within(spp).
+[[nodiscard]] ErrorEstimate estimate_error(std::span<const Doubling> doublings, std::size_t pixels, int spp, SamplerKind sampler);
+
+// Nothing stops before so many samples a pixel, a power of two: what is rare has to have had its chance to show (Kirk & Arvo
+// 1991), and two halves that both missed it agree.
+[[nodiscard]] int least_samples(std::size_t pixels);
+
+// Whether a picture may stop there: at a power of two and not below least_samples(), by the cautious end.
+[[nodiscard]] bool error_reached(const ErrorEstimate& estimate, std::size_t pixels, double target);
+
+// Samples a pixel at which error_reached() is to be expected; 0 where nothing is known or it would take more than 2^30.
+[[nodiscard]] int predicted_samples(const ErrorEstimate& estimate, std::size_t pixels, double target);
+
+}  // namespace glint

@@ -1,0 +1,281 @@
+// The error bar: estimates against true errors for every sampler, and the rule that stops by them.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "core/dimension.h"
+#include "core/error_metrics.h"
+#include "core/framebuffer.h"
+#include "tests/core/render_picture.h"
+#include "tests/core/test_scene.h"
+
+namespace glint {
+namespace {
+
+using namespace test;
+
+// A grey picture whose pixels are sample means of functions of the unit square, each with its exact value.
+struct Integrand {
+    double (*value)(glm::dvec2);
+    double exact;
+};
+const Integrand kMix[] = {{[](glm::dvec2 p) { return p.y < 0.4 + 0.37 * p.x ? 1.0 : 0.0; }, 0.585},
+                          {[](glm::dvec2 p) { return 0.5 + p.x * p.y; }, 0.75},
+                          {[](glm::dvec2 p) { return glm::dot(p, p) < 2.0 / kPi ? 1.0 : 0.25; }, 0.625},
+                          {[](glm::dvec2 p) { return 1.0 + p.x - p.y; }, 1.0}};
+
+class Pixels {
+public:
+    Pixels(SamplerKind kind, std::size_t count, std::uint64_t seed) : kind_(kind), seed_(seed), sums_(count) {}
+    void sample_up_to(int spp) {
+        for (std::size_t i = 0; i < sums_.size(); ++i) {
+            while (sums_[i].taken < static_cast<std::uint32_t>(spp)) {
+                const Sampler sampler(kind_, static_cast<std::uint32_t>(i), 5, sums_[i].taken, seed_);
+                const glm::vec3 c(static_cast<float>(kMix[i % 4].value(glm::dvec2(sampler.square(dimension::pixel)))));
+                sums_[i].add(&c, doublings_);
+            }
+        }
+    }
+    [[nodiscard]] ErrorEstimate estimate() const {
+        return estimate_error(doublings_, sums_.size(), static_cast<int>(sums_[0].taken), kind_);
+    }
+    [[nodiscard]] double true_mse() const {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < sums_.size(); ++i) {
+            const double e = sums_[i].mean().x - kMix[i % 4].exact;
+            sum += e * e / (kMix[i % 4].exact * kMix[i % 4].exact + 1e-2);
+        }
+        return sum / static_cast<double>(sums_.size());
+    }
+
+private:
+    SamplerKind kind_;
+    std::uint64_t seed_;
+    std::vector<PixelSum> sums_;
+    Doublings doublings_{};
+};
+
+std::string name_of(SamplerKind kind) { return std::string(kSamplerNames[static_cast<std::size_t>(kind)]); }
+
+// The plain variance of the samples is two to seven times too large here for all but `random`.
+TEST(ErrorBar, C_10_HoldsForEverySamplerAndCount) {
+    constexpr int kPictures = 40;
+    for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::joint, SamplerKind::jittered, SamplerKind::random}) {
+        std::vector<Pixels> pictures;
+        for (int i = 0; i < kPictures; ++i) pictures.emplace_back(kind, 256, 1000 + i);
+        for (const int spp : {32, 64, 128, 192, 256, 1024}) {
+            double mse = 0.0, estimate = 0.0;
+            for (Pixels& p : pictures) {
+                p.sample_up_to(spp);
+                mse += p.true_mse() / kPictures;
+                estimate += p.estimate().relrmse / kPictures;
+            }
+            const double truth = std::sqrt(mse);
+            int held = 0;
+            for (const Pixels& p : pictures) held += p.estimate().low <= truth && truth <= p.estimate().high;
+            note(fmt::format("{}_{}", name_of(kind), spp), estimate / truth);
+            EXPECT_GE(held, kPictures * 9 / 10) << name_of(kind) << ' ' << spp;
+            // Within its first block of strata jittered only knows bounds.
+            if (kind == SamplerKind::jittered && spp <= 64) continue;
+            EXPECT_NEAR(estimate / truth, 1.0, 0.2) << name_of(kind) << ' ' << spp;
+        }
+    }
+}
+
+TEST(ErrorBar, C_10_PredictsTheSamplesThatATargetNeeds) {
+    for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::jittered, SamplerKind::random}) {
+        double predicted = 0.0, reached = 0.0;
+        constexpr int kPictures = 10;
+        for (int i = 0; i < kPictures; ++i) {
+            Pixels p(kind, 1024, 77 + static_cast<std::uint64_t>(i));
+            p.sample_up_to(128);
+            const ErrorEstimate now = p.estimate();
+            p.sample_up_to(1024);
+            // The samples for the error that 1024 have, by the slope fitted at 128.
+            predicted += std::log(128.0 * std::pow(now.relrmse / std::sqrt(p.true_mse()), 1.0 / now.slope)) / kPictures;
+            reached += std::log(1024.0) / kPictures;
+        }
+        note("predicted_" + name_of(kind), std::exp(predicted - reached));
+        EXPECT_NEAR(std::exp(predicted - reached), 1.0, 0.25) << name_of(kind);
+    }
+}
+
+// Scenes, through the renderer, by one seed.
+TEST(ErrorBar, C_10_HoldsForScenes) {
+    for (const char* spec : {"builtin:balls,level=1", "builtin:mount,level=2"}) {
+        const auto scene = load_scene(spec);
+        Picture p{32, 24, 4096, 2, AcceleratorKind::bvh, {}};
+        p.settings.features = features_of(*scene);
+        p.settings.sampler = SamplerKind::joint, p.settings.seed = 12345;
+        const Image truth = render_picture(scene, p);
+        for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::jittered, SamplerKind::random}) {
+            p.settings.sampler = kind, p.settings.seed = 1, p.spp = 128;
+            Renderer renderer(2, false);
+            renderer.restart(frame_of(scene, p));
+            renderer.wait(1e9, nullptr);
+            Image image;
+            ASSERT_TRUE(renderer.resolve(image));
+            const ErrorEstimate e = renderer.error();
+            const double error = std::sqrt(error_metrics(image, truth).relmse);
+            note(fmt::format("{}_{}", spec, name_of(kind)), e.relrmse / error);
+            EXPECT_NEAR(e.relrmse / error, 1.0, 0.35) << spec << ' ' << name_of(kind);
+            EXPECT_LE(e.low, error);
+            EXPECT_GE(e.high, error);
+        }
+    }
+}
+
+// Pixels that are 1 with a chance of p, else 0: `more` samples each, until the rule stops it. Returns samples a pixel.
+int sample_until(double p, double target, std::uint64_t seed, std::vector<PixelSum>& pixels) {
+    Doublings doublings{};
+    for (int spp = 1; spp <= 1 << 22; spp *= 2) {
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            while (pixels[i].taken < static_cast<std::uint32_t>(spp)) {
+                const Sampler sampler(SamplerKind::random, static_cast<std::uint32_t>(i), 0, pixels[i].taken, seed);
+                const glm::vec3 c(static_cast<double>(sampler.interval(1)) < p ? 1.0f : 0.0f);
+                pixels[i].add(&c, doublings);
+            }
+        }
+        if (error_reached(estimate_error(doublings, pixels.size(), spp, SamplerKind::random), pixels.size(), target)) return spp;
+    }
+    return 0;
+}
+
+// A pilot of 16 samples that stops where it saw nothing keeps 16 % of such light (p = .01), one of 64 keeps 51 %.
+TEST(ErrorBar, S_ADP_01_RareLightIsNotLostByStopping) {
+    for (const double p : {.01, .05}) {
+        for (const std::size_t size : {std::size_t{1}, std::size_t{64}, std::size_t{1024}}) {
+            const int pictures = size == 1 ? 40 : 8;
+            double mean = 0.0, variance = 0.0;
+            for (int picture = 0; picture < pictures; ++picture) {
+                std::vector<PixelSum> pixels(size);
+                // Loose, so that it is the least number of samples that counts.
+                const int spp = sample_until(p, 3.0, 31 + static_cast<std::uint64_t>(picture), pixels);
+                EXPECT_GE(spp, least_samples(size));
+                for (const PixelSum& s : pixels) mean += s.mean().x / static_cast<double>(size) / pictures;
+                variance += p * (1 - p) / spp / static_cast<double>(size) / pictures / pictures;
+            }
+            note(fmt::format("kept_{}_{}", p, size), mean / p);
+            EXPECT_NEAR(mean, p, 3.0 * std::sqrt(variance)) << size;
+        }
+    }
+}
+
+// Intervals that are looked at again and again cover less than they say; not so at doublings and with z = 3.
+TEST(ErrorBar, S_ADP_02_StreamsThatStopByTheirOwnErrorAreCovered) {
+    constexpr double kHalf = 0.02;
+    // relRMSE at which 1.96 standard errors are the half width.
+    const double target = kHalf / 1.96 / std::sqrt(0.5 * 0.5 + 0.01);
+    for (const std::size_t size : {std::size_t{64}, std::size_t{256}, std::size_t{10000}}) {
+        const std::size_t pictures = 10000 / size;
+        std::size_t covered = 0, streams = 0;
+        for (std::size_t picture = 0; picture < pictures; ++picture) {
+            std::vector<PixelSum> pixels(size);
+            EXPECT_GT(sample_until(0.5, target, 900 + picture, pixels), 0);
+            for (const PixelSum& s : pixels) covered += std::abs(s.mean().x - 0.5) <= kHalf ? 1u : 0u;
+            streams += size;
+        }
+        const double coverage = static_cast<double>(covered) / static_cast<double>(streams);
+        note(fmt::format("coverage_of_{}_streams_{}_together", streams, size), coverage);
+        EXPECT_GE(coverage, 0.94) << size;
+    }
+}
+
+TEST(ErrorBar, S_ADP_03_TwoHalvesThatAgreeAreNoProof) {
+    // Nothing has changed so far, so the error looks like none: but not before the least number of samples.
+    const Doublings none{};
+    for (const std::size_t pixels : {std::size_t{1}, std::size_t{100}, std::size_t{5000}, std::size_t{1000000}}) {
+        for (int spp = 1; spp < least_samples(pixels); spp *= 2) {
+            const ErrorEstimate e = estimate_error(none, pixels, spp, SamplerKind::sobol);
+            EXPECT_FALSE(error_reached(e, pixels, 0.5)) << pixels << ' ' << spp;
+        }
+        EXPECT_GE(least_samples(pixels), 32);
+        EXPECT_GE(static_cast<std::size_t>(least_samples(pixels)) * pixels, std::size_t{1} << 16);
+    }
+    // The last two halves agree, those before did not.
+    Doublings chance{};
+    for (std::size_t k = 0; k < 5; ++k) chance[k].add(0.01 * std::exp2(-static_cast<double>(k)));
+    const ErrorEstimate e = estimate_error(chance, 1, 64, SamplerKind::sobol);
+    EXPECT_GT(e.relrmse, 0.0);
+    EXPECT_GT(e.cautious, e.relrmse);
+}
+
+TEST(ErrorBar, KnowsWhatItDoesNotKnow) {
+    using Kind = ErrorEstimate::Kind;
+    Doublings some{};
+    some[0].add(0.1);
+    EXPECT_EQ(estimate_error(some, 10, 1, SamplerKind::sobol).kind, Kind::unknown);
+    EXPECT_EQ(estimate_error(some, 10, 0, SamplerKind::random).kind, Kind::unknown);
+    EXPECT_EQ(estimate_error(some, 10, 64, SamplerKind::regular).kind, Kind::unknown);
+    EXPECT_EQ(estimate_error(some, 10, 2, SamplerKind::sobol).kind, Kind::estimated);
+    const auto scene = load_scene("builtin:balls,level=1");
+    Picture p{16, 16, 1, 1, AcceleratorKind::bvh, {}};
+    p.settings.features = FeatureSet::whitted();
+    Renderer renderer(1, false);
+    EXPECT_EQ(renderer.error().kind, Kind::unknown);
+    renderer.restart(frame_of(scene, p));
+    renderer.wait(1e9, nullptr);
+    EXPECT_EQ(renderer.error().kind, Kind::exact);
+    EXPECT_EQ(renderer.error().relrmse, 0.0);
+    EXPECT_TRUE(error_reached(renderer.error(), 256, 1e-6));
+}
+
+// Between powers of two: with independent samples the error of n is exactly that of one over the root of n.
+TEST(ErrorBar, BetweenDoublingsIndependentSamplesFollowTheRoot) {
+    Doublings doublings{};
+    for (std::size_t k = 0; k < 7; ++k) doublings[k].add(std::exp2(-static_cast<double>(k) - 1.0));
+    const double one = estimate_error(doublings, 1, 128, SamplerKind::random).relrmse * std::sqrt(128.0);
+    for (const int spp : {129, 150, 192, 255})
+        EXPECT_NEAR(estimate_error(doublings, 1, spp, SamplerKind::random).relrmse * std::sqrt(spp), one, 1e-9 * one) << spp;
+}
+
+TEST(ErrorBar, IsTheSameForEveryThreadCountAndWayThere) {
+    const auto scene = load_scene("builtin:dof");
+    Picture p{40, 30, 64, 1, AcceleratorKind::bvh, {}};
+    p.settings.features = features_of(*scene);
+    std::optional<ErrorEstimate> first;
+    for (const int threads : {1, 2, 3}) {
+        for (const bool preview : {false, true}) {
+            Renderer renderer(threads, preview);
+            renderer.restart(frame_of(scene, p));
+            renderer.wait(1e9, nullptr);
+            const ErrorEstimate e = renderer.error();
+            if (!first) first = e;
+            EXPECT_GT(e.relrmse, 0.0);
+            EXPECT_EQ(e.relrmse, first->relrmse);
+            EXPECT_EQ(e.high, first->high);
+        }
+    }
+}
+
+TEST(Extend, GivesTheBitsOfAFrameThatAskedForAsMany) {
+    const auto scene = load_scene("builtin:balls_box");
+    Picture p{50, 20, 100, 1, AcceleratorKind::bvh, {}};
+    p.settings.features = features_of(*scene);
+    Progress whole;
+    const Image expected = render_picture(scene, p, &whole);
+    for (const bool preview : {false, true}) {
+        Renderer renderer(3, preview);
+        p.spp = 1;
+        const std::uint64_t generation = renderer.restart(frame_of(scene, p));
+        // Once the frame is finished, and while it is at work.
+        for (const int spp : {1, 2, 7, 32, 64, 100}) {
+            EXPECT_TRUE(renderer.extend(generation, spp));
+            if (spp % 2 == 1) renderer.wait(1e9, nullptr);
+        }
+        EXPECT_TRUE(renderer.extend(generation, 5)) << "never fewer";
+        renderer.wait(1e9, nullptr);
+        EXPECT_TRUE(renderer.progress().finished);
+        EXPECT_EQ(renderer.progress().spp_min, 100);
+        EXPECT_EQ(renderer.progress().spp_max, 100);
+        EXPECT_EQ(renderer.progress().rays.camera, whole.rays.camera);
+        Image image;
+        ASSERT_TRUE(renderer.resolve(image));
+        EXPECT_EQ(differing_pixels(image, expected), 0u);
+        renderer.restart(frame_of(scene, p));
+        EXPECT_FALSE(renderer.extend(generation, 200));
+    }
+}
+
+}  // namespace
+}  // namespace glint
