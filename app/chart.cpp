@@ -27,7 +27,9 @@ std::atomic<bool> stop_requested{false};
 std::atomic<int> stop_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free);
 
+// Once; whoever insists ends the program at once.
 extern "C" void stop_chart(int signal) {
+    std::signal(signal, SIG_DFL);
     stop_signal = signal;
     stop_requested = true;
 }
@@ -170,8 +172,8 @@ Effort effort_of(const Options& o) {
 }  // namespace
 
 int run_chart(const Options& o) {
-    const fs::path folder = checked_folder(o.output);
     const std::vector<Subject> subjects = subjects_of(o);
+    const fs::path folder = checked_folder(o.output);
     std::signal(SIGINT, stop_chart);
     std::signal(SIGTERM, stop_chart);
     const int cores = available_threads();

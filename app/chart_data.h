@@ -12,7 +12,7 @@ namespace glint::chart {
 struct Point {
     double x = 0.0, y = 0.0;
     double low = std::numeric_limits<double>::quiet_NaN(), high = low;  // the 95 % band; NaN = none
-    std::vector<double> extra;                                          // one for each of Figure::extra
+    std::vector<double> extra = {};                                     // one for each of Figure::extra
 };
 
 struct Series {

@@ -10,14 +10,12 @@ namespace glint::chart {
 class Meter {
 public:
     explicit Meter(bool quiet);
-    // More work, in seconds as estimated beforehand.
+    // More work, in seconds as estimated beforehand; less of it where negative.
     void plan(double seconds) { planned_ += seconds; }
     // What comes now.
     void say(const std::string& what);
     // Work of that estimate is done.
     void did(double seconds);
-    // Work that turned out not to be needed.
-    void drop(double seconds) { planned_ -= seconds; }
     [[nodiscard]] double elapsed() const;
     void end() const;
 

@@ -21,7 +21,7 @@ a { color: var(--link); text-decoration: none; } a:hover { text-decoration: unde
 .meta { color: var(--soft); font-size: .93rem; }
 nav { display: flex; flex-wrap: wrap; gap: .3rem 1.5rem; margin: 1.2rem 0 0; font-size: .97rem; }
 section { border-top: 1px solid var(--line); margin-top: 2.8rem; padding-top: 1.5rem; }
-.grid { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 520px), 1fr)); gap: 1.9rem 2rem; margin: 1.3rem 0 0; }
+.grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 520px), 1fr)); gap: 1.9rem 2rem; margin: 1.3rem 0 0; }
 figure { margin: 0; min-width: 0; }
 figcaption { font-size: .92rem; line-height: 1.42; color: var(--soft); padding: .15rem 0 0; max-width: 40em; }
 svg { width: 100%; height: auto; display: block; }

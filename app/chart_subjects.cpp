@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -34,6 +35,8 @@ constexpr int kTimesSamples = 64, kReplicates = 8;
 // The reference's squared error against the smallest one it judges; the rule asks for 0.01.
 constexpr double kWantedShare = 0.005;
 constexpr int kMostReplicates = 8 * kReplicates;
+// How many are needed in common scenes; for the progress line, until it is known.
+constexpr int kJitteredGuess = 32, kDeepGuess = 16;
 // Seeds of references, far from those of tests.
 constexpr std::uint64_t kReferenceSeed = std::uint64_t{1} << 40;
 
@@ -104,82 +107,116 @@ std::string reference_key(Bench& bench, const RenderSettings& settings, int spp)
 }
 
 double planned_reference_seconds(Bench& bench) {
-    // Jittered ones need about four times the least, judged by the edges of common scenes.
-    const double least = static_cast<double>(kTimesSamples) * bench.subject().most_spp * bench.seconds_per_spp();
-    return least * (has_branches(bench.subject()) ? 6.0 : 5.0);
+    const double one = replicate_spp(bench.subject()) * bench.seconds_per_spp();
+    return one * (kJitteredGuess + kReplicates + (has_branches(bench.subject()) ? kDeepGuess : 0));
 }
+
+namespace {
+
+// What the best of these samplers will reach, told without a reference.
+double least_error(Bench& bench, std::initializer_list<SamplerKind> kinds, int spp) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const SamplerKind kind : kinds) {
+        RenderSettings s = reference_settings(bench.subject(), kind, false);
+        s.seed = bench.subject().seed;
+        const Image a = bench.take(s, spp).image;
+        ++s.seed;
+        least = std::min(least, relative_error_of_pair(a, bench.take(s, spp).image));
+    }
+    return least;
+}
+
+// The references of one scene: those that are there, and those that have to be rendered.
+struct Shelf {
+    Bench& bench;
+    const std::filesystem::path& folder;
+    bool quiet;
+    Meter& meter;
+    Table& table;
+
+    // judged: the least error it will judge. guess: replicates that the progress line counts on.
+    [[nodiscard]] Reference get(const char* name, const RenderSettings& settings, double judged, int guess);
+};
+
+Reference Shelf::get(const char* name, const RenderSettings& settings, double judged, int guess) {
+    const Subject& subject = bench.subject();
+    const int spp = replicate_spp(subject);
+    const double one = spp * bench.seconds_per_spp();
+    const auto path = folder / fmt::format("{}-{}-{}x{}.ref", subject.file_name(), name, subject.width, subject.height);
+    const std::string key = reference_key(bench, settings, spp);
+    const auto enough = [&](const Reference& r) {
+        const double share = r.relative_variance() / (kWantedShare * judged);
+        const int wanted =
+            static_cast<int>(std::clamp(std::ceil(r.replicates * share), 1.0 * kReplicates, 1.0 * kMostReplicates));
+        meter.plan((wanted - guess) * one);
+        guess = wanted;
+        return r.replicates >= kReplicates && share <= 1.0;
+    };
+    std::string why;
+    std::optional<Reference> r = read_reference(path, key, why);
+    if (r && (r->width != subject.width || r->height != subject.height)) r.reset(), why = "has another size";
+    if (r && !enough(*r) && r->replicates < kMostReplicates) r.reset(), why = "is not exact enough";
+    if (!why.empty() && !quiet) fmt::print(stderr, "{} {}: rendered anew\n", path.string(), why);
+    const bool kept = r.has_value();
+    if (kept) {
+        meter.plan(-guess * one);
+    } else {
+        const auto replicate = [&](int i) {
+            meter.say(fmt::format("{}: {} reference, {} of about {}", subject.spec, name, i + 1, guess));
+            RenderSettings s = settings;
+            s.seed = kReferenceSeed + static_cast<std::uint64_t>(i);
+            Image image = bench.take(s, spp).image;
+            meter.did(one);
+            return image;
+        };
+        r = average(spp, kMostReplicates, replicate, enough);
+        write_reference(path, key, *r);
+    }
+    table.rows.push_back({subject.spec, name, fmt::format("{}x{}", r->width, r->height), fmt::format("{:.0f}", r->samples()),
+                          fmt::format("{:.0f}", r->samples() / subject.most_spp), short_number(r->relative_variance()),
+                          fmt::format("{:.2f} %", 100.0 * r->relative_variance() / judged), kept ? "kept" : "rendered"});
+    return *r;
+}
+
+// Two families must agree within their errors: how far they differ, and how far chance lets them.
+std::vector<std::string> agreement(const Subject& subject, const Reference& a, const Reference& b) {
+    double off = 0.0;
+    for (std::size_t i = 0; i < b.mean.size(); ++i) {
+        for (int c = 0; c < 3; ++c) {
+            const double d = a.mean[i][c] - b.mean[i][c];
+            off += d * d / relative_scale(b.mean[i][c]);
+        }
+    }
+    off /= 3.0 * static_cast<double>(b.mean.size());
+    const double expected = a.relative_variance() + b.relative_variance();
+    return {subject.spec,
+            "jittered against sobol",
+            "",
+            "",
+            "",
+            short_number(off),
+            fmt::format("{:.2f} of chance", expected > 0.0 ? off / expected : 0.0),
+            ""};
+}
+
+}  // namespace
 
 References references_of(Bench& bench, const Effort& effort, const std::filesystem::path& folder, bool quiet, Meter& meter,
                          Table& table) {
     const Subject& subject = bench.subject();
-    // What the best curves will reach, told without a reference.
-    const auto least_error = [&](std::initializer_list<SamplerKind> kinds, int spp) {
-        double least = 1.0e300;
-        for (const SamplerKind kind : kinds) {
-            RenderSettings s = reference_settings(subject, kind, false);
-            s.seed = subject.seed;
-            const Image a = bench.take(s, spp).image;
-            ++s.seed;
-            least = std::min(least, relative_error_of_pair(a, bench.take(s, spp).image));
-        }
-        return least;
-    };
-    const auto get = [&](const char* name, SamplerKind sampler, bool deep, double judged) {
-        const RenderSettings settings = reference_settings(subject, sampler, deep);
-        const int spp = replicate_spp(subject);
-        const std::filesystem::path path =
-            folder / fmt::format("{}-{}-{}x{}.ref", subject.file_name(), name, subject.width, subject.height);
-        const std::string key = reference_key(bench, settings, spp);
-        const auto enough = [&](const Reference& r) {
-            return r.replicates >= kReplicates && r.relative_variance() <= kWantedShare * judged;
-        };
-        std::string why;
-        std::optional<Reference> r = read_reference(path, key, why);
-        if (r && (r->width != subject.width || r->height != subject.height)) r.reset(), why = "has another size";
-        if (r && r->replicates < kMostReplicates && !enough(*r)) r.reset(), why = "is not exact enough";
-        const bool kept = r.has_value();
-        if (!why.empty() && !quiet) fmt::print(stderr, "{} {}: rendered anew\n", path.string(), why);
-        if (!r) {
-            const double one = spp * bench.seconds_per_spp();
-            r = average(
-                spp, kMostReplicates,
-                [&](int i) {
-                    meter.say(fmt::format("{}: {} reference, {} of {} or more", subject.spec, name, i + 1, kReplicates));
-                    RenderSettings s = settings;
-                    s.seed = kReferenceSeed + static_cast<std::uint64_t>(i);
-                    Image image = bench.take(s, spp).image;
-                    meter.did(one);
-                    return image;
-                },
-                enough);
-            write_reference(path, key, *r);
-        }
-        table.rows.push_back({subject.spec, name, fmt::format("{}x{}", r->width, r->height), fmt::format("{:.0f}", r->samples()),
-                              fmt::format("{:.0f}", r->samples() / subject.most_spp), short_number(r->relative_variance()),
-                              fmt::format("{:.2f} %", 100.0 * r->relative_variance() / judged), kept ? "kept" : "rendered"});
-        return *r;
-    };
+    Shelf shelf{bench, folder, quiet, meter, table};
+    const auto settings = [&](SamplerKind sampler, bool deep) { return reference_settings(subject, sampler, deep); };
+    const auto best = [&](int spp) { return least_error(bench, {SamplerKind::sobol, SamplerKind::joint}, spp); };
     References r;
-    r.jittered =
-        get("jittered", SamplerKind::jittered, false, least_error({SamplerKind::sobol, SamplerKind::joint}, subject.most_spp));
-    r.sobol =
-        get("sobol", SamplerKind::sobol, false, least_error({SamplerKind::jittered, SamplerKind::random}, subject.most_spp));
-    const int settings_spp = std::min(effort.settings_most, subject.most_spp);
-    r.deep = has_branches(subject)
-                 ? get("deep", SamplerKind::jittered, true, least_error({SamplerKind::sobol, SamplerKind::joint}, settings_spp))
-                 : r.jittered;
-    // The two families must agree within their errors; that they do is a row of its own.
-    double off = 0.0;
-    for (std::size_t i = 0; i < r.sobol.mean.size(); ++i) {
-        for (int c = 0; c < 3; ++c) {
-            const double d = r.jittered.mean[i][c] - r.sobol.mean[i][c];
-            off += d * d / relative_scale(r.sobol.mean[i][c]);
-        }
+    r.jittered = shelf.get("jittered", settings(SamplerKind::jittered, false), best(subject.most_spp), kJitteredGuess);
+    r.sobol = shelf.get("sobol", settings(SamplerKind::sobol, false),
+                        least_error(bench, {SamplerKind::jittered, SamplerKind::random}, subject.most_spp), kReplicates);
+    table.rows.push_back(agreement(subject, r.jittered, r.sobol));
+    r.deep = r.jittered;
+    if (has_branches(subject)) {
+        r.deep = shelf.get("deep", settings(SamplerKind::jittered, true), best(std::min(effort.settings_most, subject.most_spp)),
+                           kDeepGuess);
     }
-    off /= 3.0 * static_cast<double>(r.sobol.mean.size());
-    const double expected = r.jittered.relative_variance() + r.sobol.relative_variance();
-    table.rows.push_back({subject.spec, "jittered against sobol", "", "", "", short_number(off),
-                          fmt::format("{:.2f} of what their errors explain", expected > 0.0 ? off / expected : 0.0), ""});
     return r;
 }
 
