@@ -121,7 +121,7 @@ struct Sections {
         "settings",
         "Approximations: bias, noise and the front",
         "Each setting differs by one thing from the scene as it comes. Squared bias and variance are told apart from pictures "
-        "of many seeds, against a reference of twice the depth; a setting is dominated if at no sample count it comes within "
+        "of many seeds, against a reference of twice the depth. A setting keeps up at a sample count if its error is within "
         "5 % of the least error that the others reach in the same time.",
         {},
         {},
@@ -130,7 +130,7 @@ struct Sections {
         "settings-table",
         "Settings",
         "Time beside the scene as it comes, both at the largest sample count. Bias² with < could not be told from chance.",
-        {"scene", "setting", "time", "relMSE", "bias²", "variance", "on the front"},
+        {"scene", "setting", "time", "relMSE", "bias²", "variance", "keeps up"},
         {}};
     Section scaling{"scaling", "Machines: break-even and threads", "", {}, {}, {}};
     Section references{"references",
@@ -186,7 +186,7 @@ int run_chart(const Options& o) {
         meter.say("warming up");
         for (const Subject& subject : subjects) {
             Bench bench(subject, threads, stop_requested);
-            meter.plan(planned_reference_seconds(bench) + planned_seconds(bench, effort) +
+            meter.plan(planned_reference_seconds(bench, effort) + planned_seconds(bench, effort) +
                        planned_settings_seconds(bench, effort));
         }
         const Machine machine{threads, o.quick, stop_requested};

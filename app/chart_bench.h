@@ -20,10 +20,12 @@ struct Subject {
     std::string features;  // --features LIST that `settings` came from; empty = the scene's own
     std::shared_ptr<const Scene> scene;
     RenderSettings settings;  // what every experiment varies one thing of
-    int width = 96, height = 72;
-    int most_spp = 256;  // a power of 4: where curves end
+    int width = 80, height = 60;
+    int most_spp = 256;  // where curves end
     std::uint64_t seed = 1;
 
+    // For headings.
+    [[nodiscard]] std::string title() const { return stresses.empty() ? spec : spec + ": " + stresses; }
     // For ids of figures and files: letters, digits and underscores, and unique enough beside a number.
     [[nodiscard]] std::string file_name() const;
     [[nodiscard]] double pixels() const { return static_cast<double>(width) * height; }

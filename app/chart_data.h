@@ -28,6 +28,7 @@ struct Series {
 struct Axis {
     std::string label;
     bool logarithmic = true;
+    std::vector<std::string> places = {};  // of a y axis: names of y = 1, 2 … from the top; empty = it has numbers
 };
 
 struct Figure {

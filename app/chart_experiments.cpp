@@ -102,7 +102,7 @@ Figure error_figure(const Stage& stage, const std::string& what, const std::vect
     const Subject& subject = stage.subject();
     Figure f;
     f.id = fmt::format("{}-{}-{}", what, subject.file_name(), over_samples ? "spp" : "seconds");
-    f.title = fmt::format("{}: {}", subject.spec, subject.stresses);
+    f.title = subject.title();
     f.x.label = over_samples ? "samples per pixel" : "seconds, build included";
     f.y.label = "relMSE";
     f.extra = {"spp", "render_seconds", "render_seconds_mad", "build_seconds", "rays"};
@@ -127,8 +127,7 @@ std::vector<Figure> chart_samplers(const Stage& stage, Table& targets) {
     const Curve &random = named(curves, "random"), &sobol = named(curves, "sobol"), &jittered = named(curves, "jittered");
     for (std::size_t i = 0; i < curves.size(); ++i) {
         const auto a = curves[i].exponent();
-        if (a && curves[i].name != "regular")
-            samples.series[i].note = fmt::format("a = {:.2f} ± {:.2f}", a->slope, 2.0 * a->error);
+        if (a && curves[i].name != "regular") samples.series[i].note = fmt::format("{:.2f} ± {:.2f}", a->slope, 2.0 * a->error);
         targets.rows.push_back(
             {subject.spec, curves[i].name, time_to(curves[i], kTargets[0]), time_to(curves[i], kTargets[1]),
              short_number(last(curves[i])), seconds_text(curves[i].points.back().total(curves[i].build)),
@@ -143,7 +142,8 @@ std::vector<Figure> chart_samplers(const Stage& stage, Table& targets) {
         time_to(sobol, kTargets[0]), time_to(jittered, kTargets[0]), time_to(random, kTargets[0]));
     const auto exponent = [](const Curve& c) { return c.exponent().value_or(Slope{}).slope; };
     samples.caption = fmt::format(
-        "Root relMSE falls as N^-a with a = {:.2f} for sobol, {:.2f} for jittered and {:.2f} for random. Theory: 0.50 for random "
+        "Root relMSE falls as N^-a, a beside the names: {:.2f} for sobol, {:.2f} for jittered and {:.2f} for random. Theory: "
+        "0.50 for random "
         "anywhere, about 0.75 for both others where a pixel holds one edge, less with every dimension that has edges of its own.",
         exponent(sobol), exponent(jittered), exponent(random));
     return {std::move(seconds), std::move(samples)};

@@ -60,6 +60,16 @@ std::string axis(char name, const Axis& a, const Range& r, bool powers_of_two) {
     std::string s = fmt::format("set {}range [{:.9g}:{:.9g}]\n", name, r.lo, r.hi);
     const char* offset = name == 'y' ? " offset 1,0" : " offset 0,0.3";
     s += fmt::format("set {}label {} textcolor rgb '#010203'{}\n", name, gnuplot_text(a.label), offset);
+    if (!a.places.empty()) {
+        std::string names;
+        for (std::size_t i = 0; i < a.places.size(); ++i) {
+            names += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_text(a.places[i]), i + 1);
+        }
+        return s + fmt::format(
+                       "set {}range [{:.9g}:{:.9g}] reverse\nset {}tics nomirror textcolor rgb '#010203' ({})\nset lmargin at "
+                       "screen 0.2\n",
+                       name, 0.4, static_cast<double>(a.places.size()) + 0.6, name, names);
+    }
     if (!a.logarithmic) return s + fmt::format("set {}tics nomirror textcolor rgb '#010203'\n", name);
     s += fmt::format("set logscale {}\n", name);
     std::string tics;
@@ -84,7 +94,7 @@ std::string axis(char name, const Axis& a, const Range& r, bool powers_of_two) {
 
 constexpr std::string_view kCommon =
     "set encoding utf8\nset border 3 linecolor rgb '#010203' lw 0.6\nset grid xtics ytics lt 1 lw 0.5 linecolor rgb '#040506'\n"
-    "set tics scale 0.5\nunset key\nset rmargin at screen 0.72\nset lmargin at screen 0.125\nset tmargin at screen 0.93\n"
+    "set tics scale 0.5\nunset key\nset rmargin at screen 0.7\nset lmargin at screen 0.125\nset tmargin at screen 0.93\n"
     "set bmargin at screen 0.16\n";
 
 // Names stand at the right, in the order of the curves' ends, pushed apart where they would touch.
@@ -101,6 +111,8 @@ std::string labels(const Figure& f, const Range& x, const Range& y) {
             right = p.x;
             at = y.part(p.y);
         }
+        // Where the axis holds names, an end's height means nothing: labels stand from the top in their order.
+        if (!f.y.places.empty()) at = 0.97 - 0.08 * static_cast<double>(i);
         if (!f.series[i].name.empty()) list.push_back({std::clamp(at, 0.0, 1.0), i});
     }
     std::ranges::stable_sort(list, {}, &Label::at);
@@ -115,7 +127,7 @@ std::string labels(const Figure& f, const Range& x, const Range& y) {
     for (const Label& l : list) {
         const Series& series = f.series[l.series];
         const std::string text = series.note.empty() ? series.name : fmt::format("{}  {}", series.name, series.note);
-        s += fmt::format("set label {} at graph 1.035, graph {:.4f} left textcolor rgb '{}'\n", gnuplot_text(text), l.at,
+        s += fmt::format("set label {} at graph 1.03, graph {:.4f} left textcolor rgb '{}'\n", gnuplot_text(text), l.at,
                          colour(series.colour));
     }
     return s;
@@ -197,8 +209,8 @@ std::string plot_script(const WinnerMap& m) {
     std::string script(kCommon), plots;
     script += axis('x', m.x, x, false) + axis('y', m.y, y, false);
     for (std::size_t c = 0; c < m.candidates.size(); ++c) {
-        script += fmt::format("set label {} at graph 1.035, graph {:.3f} left textcolor rgb '{}'\n", gnuplot_text(m.candidates[c]),
-                              0.9 - 0.08 * static_cast<double>(c), colour(static_cast<int>(c)));
+        script += fmt::format("set label {} at graph 1.035, graph {:.3f} left textcolor rgb '{}'\n",
+                              gnuplot_text(m.candidates[c]), 0.9 - 0.08 * static_cast<double>(c), colour(static_cast<int>(c)));
         std::string block;
         for (std::size_t j = 0; j < m.ys.size(); ++j) {
             for (std::size_t i = 0; i < m.xs.size(); ++i) {

@@ -36,7 +36,8 @@ nlohmann::json json_of(const Figure& f) {
         }
         series.push_back({{"name", s.name}, {"note", s.note}, {"command", s.command}, {"points", points}});
     }
-    return {{"id", f.id}, {"title", f.title}, {"caption", f.caption}, {"x", f.x.label}, {"y", f.y.label}, {"series", series}};
+    return {{"id", f.id},     {"title", f.title},     {"caption", f.caption}, {"x", f.x.label},
+            {"y", f.y.label}, {"places", f.y.places}, {"series", series}};
 }
 
 nlohmann::json json_of(const WinnerMap& m) {
@@ -54,12 +55,14 @@ nlohmann::json json_of(const Table& t) {
 std::string csv_of(const Figure& f) {
     std::string out = "series,x,y,low,high";
     for (const std::string& name : f.extra) out += fmt::format(",{}", field(name));
-    out += "\n";
+    out += f.y.places.empty() ? "\n" : ",place\n";
     for (const Series& s : f.series) {
         for (const Point& p : s.points) {
             out += fmt::format("{},{},{},{},{}", field(s.name), number(p.x), number(p.y), number(p.low), number(p.high));
-            for (std::size_t i = 0; i < f.extra.size(); ++i) out += fmt::format(",{}", i < p.extra.size() ? number(p.extra[i]) : "");
-            out += "\n";
+            for (std::size_t i = 0; i < f.extra.size(); ++i)
+                out += fmt::format(",{}", i < p.extra.size() ? number(p.extra[i]) : "");
+            const auto place = static_cast<std::size_t>(p.y - 1.0);
+            out += place < f.y.places.size() ? fmt::format(",{}\n", field(f.y.places[place])) : "\n";
         }
     }
     return out;

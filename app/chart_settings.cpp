@@ -1,5 +1,6 @@
 // Approximations: the list of them, what each does to bias, noise and time, and the front of all.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -15,31 +16,36 @@ namespace {
 // Where a setting can make a difference.
 enum class Acts { always, glass, branches, area_light };
 
+// What is drawn in one colour.
+enum class Kind { base, sampler, glass, depth, cutoff, light };
+constexpr std::array<const char*, 6> kKindNames{"as it comes", "sampler", "glass", "depth", "cut-off", "light samples"};
+
 struct Knob {
     const char* name;
+    Kind kind;
     Acts acts;
     void (*turn)(RenderSettings&);
 };
 
 // One line each; the first is what all others differ from by one thing.
 const Knob kKnobs[] = {
-    {"as it comes", Acts::always, [](RenderSettings&) {}},
-    {"joint", Acts::always, [](RenderSettings& s) { s.sampler = SamplerKind::joint; }},
-    {"jittered", Acts::always, [](RenderSettings& s) { s.sampler = SamplerKind::jittered; }},
-    {"schlick", Acts::glass, [](RenderSettings& s) { s.fresnel = Fresnel::schlick; }},
-    {"one glass branch", Acts::glass, [](RenderSettings& s) { s.glass = GlassBranches::one; }},
-    {"depth 1", Acts::branches, [](RenderSettings& s) { s.depth = 1; }},
-    {"depth 2", Acts::branches, [](RenderSettings& s) { s.depth = 2; }},
-    {"depth 3", Acts::branches, [](RenderSettings& s) { s.depth = 3; }},
-    {"depth 4", Acts::branches, [](RenderSettings& s) { s.depth = 4; }},
-    {"depth 6", Acts::branches, [](RenderSettings& s) { s.depth = 6; }},
-    {"cut-off 0.1", Acts::branches, [](RenderSettings& s) { s.cutoff = 0.1f; }},
-    {"cut-off 0.03", Acts::branches, [](RenderSettings& s) { s.cutoff = 0.03f; }},
-    {"cut-off 0.01", Acts::branches, [](RenderSettings& s) { s.cutoff = 0.01f; }},
-    {"cut-off 0.002", Acts::branches, [](RenderSettings& s) { s.cutoff = 0.002f; }},
-    {"2 light samples", Acts::area_light, [](RenderSettings& s) { s.light_samples = 2; }},
-    {"4 light samples", Acts::area_light, [](RenderSettings& s) { s.light_samples = 4; }},
-    {"8 light samples", Acts::area_light, [](RenderSettings& s) { s.light_samples = 8; }},
+    {"as it comes", Kind::base, Acts::always, [](RenderSettings&) {}},
+    {"joint", Kind::sampler, Acts::always, [](RenderSettings& s) { s.sampler = SamplerKind::joint; }},
+    {"jittered", Kind::sampler, Acts::always, [](RenderSettings& s) { s.sampler = SamplerKind::jittered; }},
+    {"schlick", Kind::glass, Acts::glass, [](RenderSettings& s) { s.fresnel = Fresnel::schlick; }},
+    {"one glass branch", Kind::glass, Acts::glass, [](RenderSettings& s) { s.glass = GlassBranches::one; }},
+    {"depth 1", Kind::depth, Acts::branches, [](RenderSettings& s) { s.depth = 1; }},
+    {"depth 2", Kind::depth, Acts::branches, [](RenderSettings& s) { s.depth = 2; }},
+    {"depth 3", Kind::depth, Acts::branches, [](RenderSettings& s) { s.depth = 3; }},
+    {"depth 4", Kind::depth, Acts::branches, [](RenderSettings& s) { s.depth = 4; }},
+    {"depth 6", Kind::depth, Acts::branches, [](RenderSettings& s) { s.depth = 6; }},
+    {"cut-off 0.1", Kind::cutoff, Acts::branches, [](RenderSettings& s) { s.cutoff = 0.1f; }},
+    {"cut-off 0.03", Kind::cutoff, Acts::branches, [](RenderSettings& s) { s.cutoff = 0.03f; }},
+    {"cut-off 0.01", Kind::cutoff, Acts::branches, [](RenderSettings& s) { s.cutoff = 0.01f; }},
+    {"cut-off 0.002", Kind::cutoff, Acts::branches, [](RenderSettings& s) { s.cutoff = 0.002f; }},
+    {"2 light samples", Kind::light, Acts::area_light, [](RenderSettings& s) { s.light_samples = 2; }},
+    {"4 light samples", Kind::light, Acts::area_light, [](RenderSettings& s) { s.light_samples = 4; }},
+    {"8 light samples", Kind::light, Acts::area_light, [](RenderSettings& s) { s.light_samples = 8; }},
 };
 
 bool can_act_here(const Subject& subject, Acts acts) {
@@ -69,63 +75,90 @@ std::vector<Variant> variants_of(const Bench& bench, const References* r, const 
     return list;
 }
 
-// All of a setting's points against the front of everything: the least factor by which its error exceeds the front's at equal
-// time, without its own points. Below 1 it stands on the front.
-double excess(const std::vector<Curve>& curves, std::size_t which) {
+Kind kind_of(const std::string& name) { return std::ranges::find(kKnobs, name, &Knob::name)->kind; }
+
+// A setting's points against the least error that all others reach in the same time: the sample counts at which it keeps up, and
+// the least factor by which it falls behind.
+struct Standing {
+    std::vector<int> keeps_up;
+    double behind = std::numeric_limits<double>::infinity();
+};
+
+// Timings scatter by a few per cent, so what falls behind by less than this is not called dominated.
+constexpr double kTie = 1.05;
+
+Standing standing(const std::vector<Curve>& curves, std::size_t which) {
     std::vector<XY> others;
     for (std::size_t i = 0; i < curves.size(); ++i) {
         if (i == which) continue;
         for (const XY& p : curves[i].error_over_seconds()) others.push_back(p);
     }
-    double least = std::numeric_limits<double>::infinity();
-    for (const XY& p : curves[which].error_over_seconds()) {
-        const double front = front_at(others, p.x);
-        least = std::min(least, std::isfinite(front) && front > 0.0 ? p.y / front : 0.0);
+    Standing s;
+    for (const Measured& m : curves[which].points) {
+        const double front = front_at(others, m.total(curves[which].build));
+        const double behind = std::isfinite(front) && front > 0.0 ? m.error.middle / front : 0.0;
+        s.behind = std::min(s.behind, behind);
+        if (behind <= kTie) s.keeps_up.push_back(m.spp);
     }
-    return least;
+    return s;
 }
 
-// Timings scatter by a few per cent, so what exceeds the front by less than this is not called dominated.
-constexpr double kTie = 1.05;
-
+// Rows of settings: noise, bias, and how much bias would not have been seen.
 Figure split_figure(const Stage& stage, const std::vector<Curve>& curves) {
+    const Subject& subject = stage.subject();
     Figure f;
-    f.id = fmt::format("bias-{}", stage.subject().file_name());
-    f.title = fmt::format("{}: bias and noise at {} samples", stage.subject().spec, curves.front().points.back().spp);
-    f.x.label = "seconds, build included";
-    f.y.label = "variance or squared bias, relative";
-    f.extra = {"spp", "bias2", "bias2_noise", "variance", "relmse"};
+    f.id = fmt::format("bias-{}", subject.file_name());
+    f.title = fmt::format("{}, {} samples", subject.title(), curves.front().points.back().spp);
+    f.x.label = "variance and squared bias, relative";
+    f.y.logarithmic = false;
+    f.extra = {"spp", "seconds", "seconds_as_it_comes"};
+    Series variance{"variance", "", "", 0, Series::Look::dots, {}}, bias{"bias²", "", "", 1, Series::Look::dots, {}};
+    Series unseen{"bias² below this", "", "", 7, Series::Look::dots, {}};
+    const double base = curves.front().points.back().total(curves.front().build);
     for (std::size_t i = 0; i < curves.size(); ++i) {
         const Curve& c = curves[i];
         const Measured& m = c.points.back();
-        const double bias2 = c.split->bias2(), noise = c.split->bias2_noise();
-        const std::vector<double> extra{static_cast<double>(m.spp), bias2, noise, c.split->variance(), m.error.middle};
-        const int colour = static_cast<int>(i);
+        const double bias2 = c.split->bias2(), noise = c.split->bias2_noise(), row = static_cast<double>(i + 1);
+        const std::vector<double> extra{static_cast<double>(m.spp), m.total(c.build), base};
+        f.y.places.push_back(fmt::format("{}  ×{:.2f}", c.name, m.total(c.build) / base));
+        variance.points.push_back({c.split->variance(), row, Point{}.low, Point{}.high, extra});
         const bool seen = bias2 > noise;
-        Series s{c.name, seen ? "biased" : "", render_command(stage.subject(), c.settings, m.spp),
-                 colour, Series::Look::dots,   {}};
-        s.points.push_back({m.total(c.build), c.split->variance(), Point{}.low, Point{}.high, extra});
-        // A stalk from the noise to the bias, where there is one.
-        if (seen) {
-            s.look = Series::Look::curve;
-            s.points.push_back({m.total(c.build), bias2, Point{}.low, Point{}.high, extra});
-        }
-        f.series.push_back(std::move(s));
+        (seen ? bias : unseen).points.push_back({seen ? bias2 : noise, row, Point{}.low, Point{}.high, extra});
     }
+    for (const Curve& c : curves) variance.command += render_command(subject, c.settings, c.points.back().spp) + "\n";
+    f.series = {std::move(variance), std::move(bias), std::move(unseen)};
     return f;
 }
 
 Figure front_figure(const Stage& stage, const std::vector<Curve>& curves) {
-    Figure f = error_figure(stage, "front", curves, false);
-    f.title = fmt::format("{}: all settings, and the front", stage.subject().spec);
+    Figure by_setting = error_figure(stage, "front", curves, false), f = by_setting;
     f.levels.clear();
+    f.series.clear();
+    f.extra.insert(f.extra.begin(), "setting");
     std::vector<XY> all;
-    for (const Curve& c : curves) {
-        for (const XY& p : c.error_over_seconds()) all.push_back(p);
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        for (const Measured& m : curves[i].points) names.push_back(fmt::format("{} with {}", curves[i].name, m.spp));
+        for (const XY& p : curves[i].error_over_seconds()) all.push_back(p);
+    }
+    // The dots of one kind share a colour and a name.
+    for (std::size_t kind = 0; kind < kKindNames.size(); ++kind) {
+        Series s{kKindNames[kind], "", "", static_cast<int>(kind), Series::Look::dots, {}};
+        for (std::size_t i = 0; i < curves.size(); ++i) {
+            if (kind_of(curves[i].name) != static_cast<Kind>(kind)) continue;
+            for (Point p : by_setting.series[i].points) {
+                p.extra.insert(p.extra.begin(), static_cast<double>(i));
+                s.points.push_back(std::move(p));
+            }
+        }
+        if (!s.points.empty()) f.series.push_back(std::move(s));
     }
     Series front{"", "", "", 7, Series::Look::front, {}};
-    for (const std::size_t i : pareto_front(all)) front.points.push_back({all[i].x, all[i].y, Point{}.low, Point{}.high, {}});
-    for (Series& s : f.series) s.look = Series::Look::dots;
+    for (const std::size_t i : pareto_front(all)) {
+        front.points.push_back({all[i].x, all[i].y, Point{}.low, Point{}.high, {}});
+        f.caption += (f.caption.empty() ? "The front, from fast to exact: " : ", ") + names[i];
+    }
+    f.caption += ".";
     f.series.push_back(std::move(front));
     return f;
 }
@@ -138,39 +171,34 @@ std::vector<Figure> chart_settings(const Stage& stage, Table& table) {
     const std::vector<Curve> curves = measure_curves(stage.bench, variants_of(stage.bench, &stage.references, stage.effort),
                                                      stage.effort.seeds, true, stage.meter);
     Figure split = split_figure(stage, curves), front = front_figure(stage, curves);
-    std::string dominated, on_front, biased;
     const Curve& base = curves.front();
     const double base_seconds = base.points.back().total(base.build);
-    const auto add = [](std::string& list, const std::string& word) { list += (list.empty() ? "" : ", ") + word; };
-    double worst_bias = 0.0;
+    std::string dominated, biased;
+    double worst_bias = 0.0, worst_variance = 1.0;
     for (std::size_t i = 0; i < curves.size(); ++i) {
         const Curve& c = curves[i];
         const Measured& m = c.points.back();
-        const double over = excess(curves, i), bias2 = c.split->bias2(), noise = c.split->bias2_noise();
-        const bool seen = bias2 > noise, beaten = over > kTie;
-        add(beaten ? dominated : on_front, c.name);
-        if (seen && bias2 > worst_bias) worst_bias = bias2, biased = c.name;
-        front.series[i].note = beaten ? fmt::format("×{:.2f}", over) : "";
+        const Standing stands = standing(curves, i);
+        const double bias2 = c.split->bias2(), noise = c.split->bias2_noise();
+        const bool seen = bias2 > noise;
+        std::string where;
+        for (const int spp : stands.keeps_up) where += fmt::format("{}{}", where.empty() ? "at " : ", ", spp);
+        if (where.empty()) {
+            where = fmt::format("no: ×{:.2f}", stands.behind);
+            dominated += fmt::format("{}{} (×{:.2f})", dominated.empty() ? "" : ", ", c.name, stands.behind);
+        }
+        if (seen && bias2 > worst_bias) worst_bias = bias2, worst_variance = c.split->variance(), biased = c.name;
         table.rows.push_back({subject.spec, c.name, fmt::format("{:.2f}", m.total(c.build) / base_seconds),
-                              short_number(m.error.middle),
-                              seen ? short_number(bias2) : fmt::format("< {}", short_number(std::max(noise, bias2))),
-                              short_number(c.split->variance()),
-                              beaten       ? fmt::format("no: ×{:.2f} at equal time", over)
-                              : over > 1.0 ? "tie"
-                                           : "yes"});
+                              short_number(m.error.middle), seen ? short_number(bias2) : fmt::format("< {}", short_number(noise)),
+                              short_number(c.split->variance()), where});
     }
-    split.caption = fmt::format(
-        "From {} seeds: a dot is the variance of one picture, the other end of a stalk the squared bias where it can be told "
-        "from chance. {}",
-        stage.effort.seeds,
-        biased.empty() ? std::string("None of these settings is visibly biased.")
-                       : fmt::format("The most biased is {} with {}, as much as {} samples of noise as it comes.", biased,
-                                     short_number(worst_bias),
-                                     short_number(std::max(1.0, base.split->variance() * base.points.back().spp / worst_bias))));
-    front.caption = fmt::format("On the front (or within {:.0f} % of it): {}. {}", 100.0 * (kTie - 1.0), on_front,
-                                dominated.empty()
-                                    ? std::string("None is dominated.")
-                                    : fmt::format("Dominated, with the error beside the front's at equal time: {}.", dominated));
+    split.caption =
+        fmt::format("Pictures of {} seeds; × is the time beside the scene as it comes. {}", stage.effort.seeds,
+                    biased.empty() ? std::string("None of these settings has a bias that can be told from chance.")
+                                   : fmt::format("The most biased is {}: its squared bias is {}, {} times its variance.", biased,
+                                                 short_number(worst_bias), short_number(worst_bias / worst_variance)));
+    front.caption += dominated.empty() ? " None of the settings is dominated at every sample count."
+                                       : fmt::format(" Dominated at every sample count, with the least factor: {}.", dominated);
     return {std::move(split), std::move(front)};
 }
 

@@ -20,7 +20,7 @@ namespace glint::chart {
 [[nodiscard]] References references_of(Bench& bench, const Effort& effort, const std::filesystem::path& folder, bool quiet,
                                        Meter& meter, Table& table);
 // What that takes if nothing is there yet.
-[[nodiscard]] double planned_reference_seconds(Bench& bench);
+[[nodiscard]] double planned_reference_seconds(Bench& bench, const Effort& effort);
 
 // Everything that decides a reference, in words: scene, camera, settings, size, samples, version, and the bytes of a few samples.
 [[nodiscard]] std::string reference_key(Bench& bench, const RenderSettings& settings, int spp);
