@@ -28,8 +28,8 @@ Forecast forecast(const ErrorEstimate& e, const Progress& p, std::size_t pixels,
 double next_target(const ErrorEstimate& e) {
     if (!(e.cautious > 0.0)) return 0.0;
     const double decade = std::pow(10.0, std::ceil(std::log10(e.cautious)));
-    for (const double step : {0.5, 0.2, 0.1, 0.05})
-        if (decade * step < e.cautious) return decade * step;
+    for (const double step : {2.0, 5.0, 10.0, 20.0})
+        if (decade / step < e.cautious) return decade / step;
     return 0.0;
 }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/error_bar.h"
 #include "core/render_plan.h"
 
 namespace glint {
@@ -163,7 +164,7 @@ std::optional<AcceleratorKind> Session::accelerator_in_use() const {
     return kind_of(*submitted_->accelerator);
 }
 
-std::string Session::title(const Progress& progress) const {
+std::string Session::title(const Progress& progress, const ErrorEstimate& error) const {
     const bool builtin = scene_->name.starts_with("builtin:");
     std::string text =
         fmt::format("glint \u2014 {}", builtin ? scene_->name : std::filesystem::path(scene_->name).filename().string());
@@ -174,6 +175,11 @@ std::string Session::title(const Progress& progress) const {
         if (progress.seconds > 0.0)
             text += fmt::format(" \u2014 {:.1f} Mrays/s", static_cast<double>(progress.rays.total()) / progress.seconds * 1e-6);
     }
+    if (const std::string bar = error_text(error); !bar.empty()) text += fmt::format(" \u2014 {}", bar);
+    const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    const Forecast next = forecast(error, progress, pixels, next_target(error));
+    if (next.target > 0.0 && next.spp > progress.spp_min && next.spp <= choices_.spp && !choices_.paused)
+        text += fmt::format(", {:g} in {:.0f} s", next.target, std::max(1.0, next.seconds - progress.seconds));
     text += " \u2014";
     const FeatureSet on = choices_.settings.features;
     for (std::size_t i = 0; i < kFeatureNames.size(); ++i)

@@ -74,7 +74,7 @@ public:
     [[nodiscard]] const Scene& scene() const { return *scene_; }
     // The accelerator of the submitted frame; empty before the first frame.
     [[nodiscard]] std::optional<AcceleratorKind> accelerator_in_use() const;
-    [[nodiscard]] std::string title(const Progress& progress) const;
+    [[nodiscard]] std::string title(const Progress& progress, const ErrorEstimate& error = {}) const;
     // For the help: "on", "off", a value, or why the setting cannot act in this scene; empty where there is no state.
     [[nodiscard]] std::string state_of(Action action) const;
     // Lines for the user since the last call, for example why a toggle cannot act.

@@ -159,7 +159,8 @@ void Viewer::draw(const Progress& progress, double now) {
 void Viewer::update_title(double now) {
     const Progress progress = shown_of_frame();
     if (now < next_title_ && !progress.finished) return;
-    window_->set_title(session_.title(progress));
+    const bool current = progress.generation == generation_;
+    window_->set_title(session_.title(progress, current ? renderer_.error() : ErrorEstimate()));
     next_title_ = now + kTitleSeconds;
 }
 

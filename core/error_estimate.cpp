@@ -22,9 +22,9 @@ const double kLogUsual = std::log(0.4);
 constexpr double kUsualSpread = 0.2;
 // The ratio drifts: as samples grow, the parts of a picture that converge slowly make up more of what is left.
 constexpr double kDrift = 0.07;
-// While a picture is noisy, changes are weighed by noisy means; the error is wrong by up to about as many times its own square
-// (measured: tests/bench/error_bar).
-constexpr double kNoisyWeights = 3.0;
+// While a picture is noisy, changes are weighed by noisy means: E 1/I^2 is (1 + 3 v) / truth^2 for a relative variance v, and v
+// is one, two and four times the present one in the window.
+constexpr double kNoisyWeights = 7.0;
 // Changes that are looked at. Two tell the ratio badly, four tell an old one.
 constexpr std::size_t kWindow = 3;
 
@@ -72,14 +72,16 @@ Level extrapolate(const Window& w, double ratio, double told, double unsure) {
     if (!(level > 0.0)) return out;
     // Of log(mse) by log(ratio), then by each change (delta method).
     const double by_ratio = lever / level + 1.0 / (1.0 - ratio);
+    // This picture's own error strays from the expected one as the newest change, of as many pixels, does.
     double variance = by_ratio * by_ratio * unsure * unsure;
+    if (w.change[0] > 0.0) variance += w.variance[0] / (w.change[0] * w.change[0]);
     power = 1.0;
     for (std::size_t i = 0; i < w.size; ++i, power *= ratio) {
         double by_change = power / (n * level);
         if (told > 0.0) by_change += by_ratio * told * ((i + 1 < w.size ? 1.0 / newer : 0.0) - (i > 0 ? 1.0 / older : 0.0));
         variance += by_change * by_change * w.variance[i];
     }
-    out.spread = std::hypot(std::sqrt(variance), kNoisyWeights * std::min(1.0, out.mse));
+    out.spread = std::hypot(std::sqrt(variance), std::min(1.0, kNoisyWeights * out.mse));
     return out;
 }
 

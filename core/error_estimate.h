@@ -43,10 +43,13 @@ using Doublings = std::array<Doubling, kDoublings>;
     return spp > 0 ? static_cast<std::size_t>(std::bit_width(static_cast<std::uint32_t>(spp))) - 1 : 0;
 }
 
-// mean over channels of (mean - before)^2 / (mean^2 + 0.01).
+// mean over channels of (mean - before)^2 / (truth^2 + 0.01). For truth^2 stands mean^2 - (mean - before)^2 / 2, between mean^2,
+// in which a spark would hide its own error, and the product of the two halves' means, which is unbiased but too small where a
+// half is dark by chance.
 [[nodiscard]] inline double relative_change(glm::dvec3 mean, glm::dvec3 before) {
     constexpr double kRelativeFloor = 1e-2;
-    const glm::dvec3 d = mean - before, ratio = d * d / (mean * mean + kRelativeFloor);
+    const glm::dvec3 change = mean - before, squared = change * change;
+    const glm::dvec3 ratio = squared / (glm::max(mean * mean - 0.5 * squared, 0.0) + kRelativeFloor);
     return (ratio.x + ratio.y + ratio.z) / 3.0;
 }
 

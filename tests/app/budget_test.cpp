@@ -20,10 +20,10 @@ protected:
 };
 
 TEST_F(BudgetCommand, NoiseStopsAtADoublingBelowTheTarget) {
-    const nlohmann::json loose = stats("--noise 0.2"), fine = stats("--noise 0.04 --spp 100000");
+    const nlohmann::json loose = stats("--noise 0.2"), fine = stats("--noise 0.01 --spp 100000");
     EXPECT_EQ(loose["stopped_by"], "noise");
     EXPECT_EQ(fine["stopped_by"], "noise");
-    EXPECT_LE(fine["error"]["high"], 0.04);
+    EXPECT_LE(fine["error"]["high"], 0.01);
     EXPECT_LT(fine["error"]["relrmse"], loose["error"]["relrmse"]);
     const int spp = fine["spp"];
     EXPECT_GT(spp, static_cast<int>(loose["spp"]));
@@ -95,7 +95,7 @@ TEST(Forecast, GoesByTheFittedSlope) {
     e.spp = 64, e.relrmse = 0.04, e.cautious = 0.05, e.slope = 1.0;
     Progress p;
     p.rays.camera = 64 * 10000, p.seconds = 2.0;
-    EXPECT_EQ(next_target(e), 0.02);
+    EXPECT_DOUBLE_EQ(next_target(e), 0.02);
     const Forecast f = forecast(e, p, 10000, 0.01);
     EXPECT_EQ(f.spp, 512) << "five times the samples, at the next doubling";
     EXPECT_DOUBLE_EQ(f.seconds, 16.0);

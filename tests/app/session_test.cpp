@@ -276,6 +276,20 @@ TEST_F(SessionTest, PausedWorkersStillMakeThePreviewOfAChange) {
     EXPECT_FALSE(session->resting(preview()));
 }
 
+TEST_F(SessionTest, TitleTellsTheErrorAndWhenTheNextTargetIsReached) {
+    const std::optional<Frame> frame = session->next_frame({});
+    ASSERT_TRUE(frame);
+    ErrorEstimate e;
+    e.kind = ErrorEstimate::Kind::estimated;
+    e.spp = 64, e.relrmse = 0.04, e.low = 0.036, e.high = 0.044, e.cautious = 0.05, e.slope = 1.0;
+    // Ten seconds for 64 samples of every pixel; a target of 0.02 takes 2.5 times as many, at the next doubling.
+    Progress p{.spp_min = 64, .seconds = 10.0, .rays = {}};
+    p.rays.camera = 64ull * static_cast<unsigned>(frame->width * frame->height);
+    const std::string title = session->title(p, e);
+    EXPECT_NE(title.find("relRMSE 0.0400 \u00b1 0.0040, 0.02 in 30 s"), std::string::npos) << title;
+    EXPECT_EQ(session->title(p).find("relRMSE"), std::string::npos);
+}
+
 TEST_F(SessionTest, TitleNamesSceneAcceleratorSamplesSpeedAndFeatures) {
     ASSERT_TRUE(session->next_frame({}));
     Progress p{.spp_min = 37, .seconds = 2.0, .rays = {}};

@@ -95,7 +95,7 @@ void print_row(const std::string& scene, const std::string& sampler, const std::
         std::size_t covered = 0;
         for (const Run& r : runs) {
             ratio.push_back(r.estimate[k].relrmse / expected[k]);
-            if (r.estimate[k].low <= expected[k] && expected[k] <= r.estimate[k].high) ++covered;
+            if (r.estimate[k].low <= r.error[k] && r.error[k] <= r.estimate[k].high) ++covered;
         }
         fmt::print(" {:5.2f} {:3.0f}%", median(ratio), 100.0 * static_cast<double>(covered) / static_cast<double>(runs.size()));
         if (k < 4) continue;

@@ -212,7 +212,7 @@ TEST(SeedPaper, Slip_14_APictureHasASeedAMetricAndAnErrorBar) {
         return image;
     };
     double bar = 0.0;
-    const Image one = picture(1, SamplerKind::random, 16, &bar), again = picture(1, SamplerKind::random, 16, nullptr);
+    const Image one = picture(1, SamplerKind::random, 256, &bar), again = picture(1, SamplerKind::random, 256, nullptr);
     EXPECT_EQ(difference(one, again).differing, 0u);
     const Image reference = picture(99, SamplerKind::sobol, 1024, nullptr);
     const double error = std::sqrt(error_metrics(one, reference).relmse);
