@@ -36,7 +36,6 @@ struct Options {
     bool accelerator_given = false;
     std::optional<Isa> isa;  // empty = the best of this machine
     std::string features;    // LIST as typed; empty = not given
-    std::optional<int> depth;
     RenderSettings settings;  // what is independent of the scene
     std::optional<float> aperture, focus, view_angle;
     std::optional<glm::dvec3> camera_position, camera_focal_point;  // in the world
