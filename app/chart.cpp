@@ -104,7 +104,7 @@ struct Sections {
     Section accelerators{
         "accelerators",
         "Accelerators: the same error at other times",
-        "All of them give the same bytes, so only seconds can differ. Where brute force would take longer than two seconds "
+        "All of them give the same bytes, so only seconds can differ. Where brute force would take longer than half a second "
         "for a picture its curve ends.",
         {},
         {},
@@ -122,7 +122,8 @@ struct Sections {
         "Approximations: bias, noise and the front",
         "Each setting differs by one thing from the scene as it comes. Squared bias and variance are told apart from pictures "
         "of many seeds, against a reference of twice the depth. A setting keeps up at a sample count if its error is within "
-        "5 % of the least error that the others reach in the same time.",
+        "5 % of the least error that another reaches in the same time; curves are read as straight lines in log-log, which go on "
+        "past the last sample count but not below the setting's bias.",
         {},
         {},
         {}};

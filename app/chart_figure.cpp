@@ -66,9 +66,9 @@ std::string axis(char name, const Axis& a, const Range& r, bool powers_of_two) {
             names += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_text(a.places[i]), i + 1);
         }
         return s + fmt::format(
-                       "set {}range [{:.9g}:{:.9g}] reverse\nset {}tics nomirror textcolor rgb '#010203' ({})\nset lmargin at "
-                       "screen 0.2\n",
-                       name, 0.4, static_cast<double>(a.places.size()) + 0.6, name, names);
+                       "set {}range [{:.9g}:{:.9g}]\nset {}tics nomirror textcolor rgb '#010203' ({})\nset lmargin at "
+                       "screen 0.29\n",
+                       name, static_cast<double>(a.places.size()) + 0.6, 0.4, name, names);
     }
     if (!a.logarithmic) return s + fmt::format("set {}tics nomirror textcolor rgb '#010203'\n", name);
     s += fmt::format("set logscale {}\n", name);
@@ -78,7 +78,7 @@ std::string axis(char name, const Axis& a, const Range& r, bool powers_of_two) {
     };
     const double decades = std::log10(r.hi / r.lo);
     if (powers_of_two) {
-        const int skip = decades > 4.0 ? 4 : 2;
+        const int skip = decades > 4.0 ? 4 : decades > 1.6 ? 2 : 1;
         for (int k = 0; k < 40; k += skip) {
             if (const double v = std::ldexp(1.0, k); v >= r.lo && v <= r.hi) add(v, fmt::format("{}", v));
         }

@@ -53,6 +53,13 @@ std::string for_page(const std::string& svg) {
     return s;
 }
 
+// For a picture that stands alone.
+std::string on_white(std::string script) {
+    script = std::regex_replace(script, std::regex("#010203"), "#333333");
+    script = std::regex_replace(script, std::regex("#040506"), "#dddddd");
+    return std::regex_replace(script, std::regex("#070809"), "#777777");
+}
+
 }  // namespace
 
 std::optional<std::string> Plotter::run(const std::string& id, const std::string& script) {
@@ -64,11 +71,13 @@ std::optional<std::string> Plotter::run(const std::string& id, const std::string
         for (const char c : path.string()) name += c == '\'' ? std::string("''") : std::string(1, c);
         return fmt::format("set output '{}'\n", name);
     };
-    std::string text =
-        fmt::format("set terminal svg size 620,350 dynamic noenhanced font 'DejaVu Sans,13'\n{}{}", output(svg), script);
-    text += fmt::format(
-        "set terminal pngcairo size 1240,700 noenhanced font 'DejaVu Sans,12' fontscale 2 linewidth 2 pointscale 2\n{}replot\n",
-        output(png));
+    const auto terminal = [&](const char* name, const fs::path& path, const std::string& drawing) {
+        return fmt::format("set terminal {}\n{}{}", name, output(path), drawing);
+    };
+    const std::string text =
+        terminal("svg size 620,350 dynamic noenhanced font 'DejaVu Sans,13'", svg, script) + "reset\n" +
+        terminal("pngcairo size 1240,700 noenhanced font 'DejaVu Sans,12' fontscale 2 linewidth 2 pointscale 2", png,
+                 on_white(script));
     write_file_atomically(gp, text);
     const int code = run_gnuplot(gp);
     std::error_code ignored;

@@ -78,7 +78,7 @@ void chart_break_even(const Machine& machine, const std::string& scene, const st
     map.command = fmt::format(
         "glint render builtin:{},n=N -o out.pfm --resolution 64x64 --spp 16 --accel none|grid|bvh --stats json", scene);
     for (const AcceleratorKind kind : kKinds) map.candidates.push_back(name_of(kind));
-    for (double rays = 1.0; rays <= 1.1e10; rays *= 10.0) map.ys.push_back(rays);
+    for (int k = 0; k <= 12; ++k) map.ys.push_back(std::pow(10.0, 0.5 * k));
     Figure figure;
     figure.id = fmt::format("costs-{}", scene);
     figure.title = fmt::format("builtin:{}: what a ray and a build cost", scene);
@@ -245,7 +245,7 @@ void chart_threads(const Machine& machine, const Subject& subject, Section& sect
 
 void chart_machine(const Machine& machine, Section& section, Meter& meter) {
     chart_break_even(machine, "soup", "triangles of any place and size", 1, machine.quick ? 1 << 16 : 1 << 20, section, meter);
-    chart_break_even(machine, "knot", "one closed mesh", 10000, machine.quick ? 40000 : 2560000, section, meter);
+    chart_break_even(machine, "knot", "one closed mesh", 10000, machine.quick ? 160000 : 2560000, section, meter);
     chart_paper(machine, section, meter);
 }
 

@@ -77,8 +77,9 @@ std::vector<Variant> variants_of(const Bench& bench, const References* r, const 
 
 Kind kind_of(const std::string& name) { return std::ranges::find(kKnobs, name, &Knob::name)->kind; }
 
-// A setting's points against the least error that all others reach in the same time: the sample counts at which it keeps up, and
-// the least factor by which it falls behind.
+// A setting's points against the least error that another one reaches in the same time, between whose sample counts curves are
+// read as straight lines that go on to their bias: the counts at which it keeps up, and the least factor by which it falls
+// behind.
 struct Standing {
     std::vector<int> keeps_up;
     double behind = std::numeric_limits<double>::infinity();
@@ -88,15 +89,15 @@ struct Standing {
 constexpr double kTie = 1.05;
 
 Standing standing(const std::vector<Curve>& curves, std::size_t which) {
-    std::vector<XY> others;
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-        if (i == which) continue;
-        for (const XY& p : curves[i].error_over_seconds()) others.push_back(p);
-    }
     Standing s;
     for (const Measured& m : curves[which].points) {
-        const double front = front_at(others, m.total(curves[which].build));
-        const double behind = std::isfinite(front) && front > 0.0 ? m.error.middle / front : 0.0;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < curves.size(); ++i) {
+            if (i == which) continue;
+            const double bias2 = curves[i].split->bias2(), floor = bias2 > curves[i].split->bias2_noise() ? bias2 : 0.0;
+            least = std::min(least, value_at(curves[i].error_over_seconds(), m.total(curves[which].build), floor));
+        }
+        const double behind = std::isfinite(least) && least > 0.0 ? m.error.middle / least : 0.0;
         s.behind = std::min(s.behind, behind);
         if (behind <= kTie) s.keeps_up.push_back(m.spp);
     }
@@ -136,10 +137,8 @@ Figure front_figure(const Stage& stage, const std::vector<Curve>& curves) {
     f.series.clear();
     f.extra.insert(f.extra.begin(), "setting");
     std::vector<XY> all;
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-        for (const Measured& m : curves[i].points) names.push_back(fmt::format("{} with {}", curves[i].name, m.spp));
-        for (const XY& p : curves[i].error_over_seconds()) all.push_back(p);
+    for (const Curve& c : curves) {
+        for (const XY& p : c.error_over_seconds()) all.push_back(p);
     }
     // The dots of one kind share a colour and a name.
     for (std::size_t kind = 0; kind < kKindNames.size(); ++kind) {
@@ -156,10 +155,9 @@ Figure front_figure(const Stage& stage, const std::vector<Curve>& curves) {
     Series front{"", "", "", 7, Series::Look::front, {}};
     for (const std::size_t i : pareto_front(all)) {
         front.points.push_back({all[i].x, all[i].y, Point{}.low, Point{}.high, {}});
-        f.caption += (f.caption.empty() ? "The front, from fast to exact: " : ", ") + names[i];
     }
-    f.caption += ".";
     f.series.push_back(std::move(front));
+    f.series.front().command = "the command lines of all settings stand with the figure beside";
     return f;
 }
 
@@ -173,7 +171,7 @@ std::vector<Figure> chart_settings(const Stage& stage, Table& table) {
     Figure split = split_figure(stage, curves), front = front_figure(stage, curves);
     const Curve& base = curves.front();
     const double base_seconds = base.points.back().total(base.build);
-    std::string dominated, biased;
+    std::string dominated, best, biased;
     double worst_bias = 0.0, worst_variance = 1.0;
     for (std::size_t i = 0; i < curves.size(); ++i) {
         const Curve& c = curves[i];
@@ -183,6 +181,8 @@ std::vector<Figure> chart_settings(const Stage& stage, Table& table) {
         const bool seen = bias2 > noise;
         std::string where;
         for (const int spp : stands.keeps_up) where += fmt::format("{}{}", where.empty() ? "at " : ", ", spp);
+        if (!stands.keeps_up.empty() && stands.keeps_up.back() == m.spp)
+            best += fmt::format("{}{}", best.empty() ? "" : ", ", c.name);
         if (where.empty()) {
             where = fmt::format("no: ×{:.2f}", stands.behind);
             dominated += fmt::format("{}{} (×{:.2f})", dominated.empty() ? "" : ", ", c.name, stands.behind);
@@ -197,8 +197,11 @@ std::vector<Figure> chart_settings(const Stage& stage, Table& table) {
                     biased.empty() ? std::string("None of these settings has a bias that can be told from chance.")
                                    : fmt::format("The most biased is {}: its squared bias is {}, {} times its variance.", biased,
                                                  short_number(worst_bias), short_number(worst_bias / worst_variance)));
-    front.caption += dominated.empty() ? " None of the settings is dominated at every sample count."
-                                       : fmt::format(" Dominated at every sample count, with the least factor: {}.", dominated);
+    front.caption =
+        fmt::format("With {} samples {} keep up with the best at equal time. {}", base.points.back().spp,
+                    best.empty() ? std::string("none") : best,
+                    dominated.empty() ? std::string("None is dominated at every sample count.")
+                                      : fmt::format("Dominated at every sample count, by at least the factor: {}.", dominated));
     return {std::move(split), std::move(front)};
 }
 

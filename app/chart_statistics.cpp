@@ -110,12 +110,15 @@ std::vector<std::size_t> pareto_front(const std::vector<XY>& points) {
     return front;
 }
 
-double front_at(const std::vector<XY>& points, double x) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const XY& p : points) {
-        if (p.x <= x) least = std::min(least, p.y);
-    }
-    return least;
+double value_at(const std::vector<XY>& curve, double x, double least) {
+    if (curve.empty() || x < curve.front().x) return std::numeric_limits<double>::infinity();
+    if (curve.size() == 1) return curve.front().y;
+    std::size_t i = 1;
+    while (i + 1 < curve.size() && x > curve[i].x) ++i;
+    const XY &a = curve[i - 1], &b = curve[i];
+    if (!(a.y > 0.0) || !(b.y > 0.0) || !(b.x > a.x)) return std::min(a.y, b.y);
+    const double y = a.y * std::pow(b.y / a.y, std::log(x / a.x) / std::log(b.x / a.x));
+    return x > b.x ? std::clamp(y, std::min(least, b.y), b.y) : y;
 }
 
 void BiasSplit::add(double sum, double sum_of_squares, double reference, double reference_variance, double scale) {

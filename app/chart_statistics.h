@@ -42,8 +42,9 @@ struct Crossing {
 // Indices of the points that no other beats: none has both a smaller-or-equal x and a smaller-or-equal y (one of them smaller;
 // of equal points the first counts). By rising x.
 [[nodiscard]] std::vector<std::size_t> pareto_front(const std::vector<XY>& points);
-// The y of the front at x: that of its last point not right of x; infinity left of its first.
-[[nodiscard]] double front_at(const std::vector<XY>& points, double x);
+// The y of a curve at x by straight lines in log-log, the last of which goes on, but not below `least`; infinity left of its
+// first point.
+[[nodiscard]] double value_at(const std::vector<XY>& curve, double x, double least = 0.0);
 
 // Bias and noise of a method from K pictures of different seeds, given per value (pixel and channel): its sum and sum of squares
 // over the pictures, the reference, the squared standard error of the reference, and what squares are divided by.

@@ -83,13 +83,27 @@ TEST(ChartStatistics, CrossingIsOnTheLineInLogLogOrCensored) {
     EXPECT_EQ(first_below({}, 0.5).kind, Crossing::Kind::after_last);
 }
 
+TEST(ChartStatistics, ACurveIsReadBetweenItsPointsInLogLog) {
+    const std::vector<XY> curve{{1.0, 1.0}, {4.0, 0.25}, {16.0, 0.01}};
+    EXPECT_EQ(value_at(curve, 0.9), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(value_at(curve, 1.0), 1.0);
+    EXPECT_NEAR(value_at(curve, 2.0), 0.5, 1e-12);
+    EXPECT_NEAR(value_at(curve, 16.0), 0.01, 1e-15);
+    // The last line falls by 25 over a factor of 4.
+    EXPECT_NEAR(value_at(curve, 64.0), 0.0004, 1e-15);
+    EXPECT_EQ(value_at(curve, 64.0, 0.002), 0.002) << "not below its bias";
+    EXPECT_EQ(value_at(curve, 64.0, 0.5), 0.01) << "a bias that the curve itself is below is none";
+    EXPECT_EQ(value_at({{1.0, 0.5}, {4.0, 0.6}}, 8.0), 0.6) << "a curve does not rise";
+    EXPECT_EQ(value_at({{1.0, 0.5}}, 8.0), 0.5);
+    EXPECT_EQ(value_at({{1.0, 1.0}, {4.0, -0.1}}, 2.0), -0.1);
+    EXPECT_EQ(value_at({}, 1.0), std::numeric_limits<double>::infinity());
+}
+
 TEST(ChartStatistics, FrontHoldsWhatNothingBeats) {
     // Slower and worse; equal; slower and better; faster and worse.
     const std::vector<XY> points{{2.0, 1.0}, {3.0, 2.0}, {2.0, 1.0}, {4.0, 0.5}, {1.0, 9.0}, {4.0, 0.7}};
     EXPECT_EQ(pareto_front(points), (std::vector<std::size_t>{4, 0, 3}));
     EXPECT_TRUE(pareto_front({}).empty());
-    EXPECT_EQ(front_at(points, 3.5), 1.0);
-    EXPECT_EQ(front_at(points, 0.5), std::numeric_limits<double>::infinity());
     // No point of a front dominates another one, and each other point is dominated by one of it.
     std::mt19937 random(9);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
