@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "accel/isa.h"
 #include "app/chart_experiments.h"
 #include "app/chart_files.h"
 #include "app/chart_page.h"
@@ -173,7 +174,7 @@ Effort effort_of(const Options& o) {
 }  // namespace
 
 int run_chart(const Options& o) {
-    const std::vector<Subject> subjects = subjects_of(o);
+    std::vector<Subject> subjects = subjects_of(o);
     const fs::path folder = checked_folder(o.output);
     std::signal(SIGINT, stop_chart);
     std::signal(SIGTERM, stop_chart);
@@ -185,8 +186,9 @@ int run_chart(const Options& o) {
     bool stopped = false;
     try {
         meter.say("warming up");
-        for (const Subject& subject : subjects) {
+        for (Subject& subject : subjects) {
             Bench bench(subject, threads, stop_requested);
+            subject.seconds_per_spp = bench.seconds_per_spp();
             meter.plan(planned_reference_seconds(bench, effort) + planned_seconds(bench, effort) +
                        planned_settings_seconds(bench, effort));
         }
@@ -211,13 +213,16 @@ int run_chart(const Options& o) {
     Chart c;
     c.title = "glint: speed against accuracy";
     c.command = command_line(o);
-    c.machine = fmt::format("{}, {} thread{}", processor(), threads, threads == 1 ? "" : "s");
+    c.machine = fmt::format("{}, {} thread{}, {}", processor(), threads, threads == 1 ? "" : "s",
+                            kIsaNames[static_cast<std::size_t>(isa_in_use())]);
     c.version = GLINT_VERSION;
     c.date = today();
     c.notes = {
         fmt::format("{} seeds a point, each one a timing; variants take turns seed by seed after a warm-up; seconds are medians "
                     "and hold the build of the accelerator. Sample counts are powers of {}.",
-                    effort.seeds, effort.step)};
+                    effort.seeds, effort.step),
+        fmt::format("Measured in {:.0f} s. Threads are not pinned; bands and medians hold what else the machine did.",
+                    meter.elapsed())};
     if (stopped) c.notes.push_back("The run was stopped: what had been measured by then is shown.");
     for (Section* section : {&s.samplers, &s.accelerators, &s.features, &s.settings, &s.scaling, &s.references}) {
         const bool rows = std::ranges::any_of(section->tables, [](const Table& t) { return !t.rows.empty(); });

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "app/chart_reference.h"
 #include "app/chart_statistics.h"
 #include "core/threads.h"
 
@@ -47,7 +48,9 @@ std::string Subject::file_name() const {
     for (char& c : name) {
         if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
     }
-    return name.substr(0, 60);
+    name.resize(std::min(name.size(), std::size_t{60}));
+    // Files of one name in different folders are different scenes.
+    return spec.starts_with("builtin:") ? name : fmt::format("{}_{:08x}", name, static_cast<std::uint32_t>(digest(spec)));
 }
 
 std::string render_command(const Subject& subject, const RenderSettings& s, int spp, const std::string& more) {
@@ -118,9 +121,9 @@ double Bench::build_seconds(AcceleratorChoice accelerator) {
 }
 
 double Bench::seconds_per_spp() {
-    if (seconds_per_spp_ > 0.0) return seconds_per_spp_;
+    if (subject_.seconds_per_spp > 0.0) return subject_.seconds_per_spp;
     (void)take(subject_.settings, 4);
-    return seconds_per_spp_ = take(subject_.settings, 16).seconds / 16.0;
+    return take(subject_.settings, 16).seconds / 16.0;
 }
 
 }  // namespace glint::chart

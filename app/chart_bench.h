@@ -21,12 +21,13 @@ struct Subject {
     std::shared_ptr<const Scene> scene;
     RenderSettings settings;  // what every experiment varies one thing of
     int width = 80, height = 60;
-    int most_spp = 256;  // where curves end
+    int most_spp = 256;  // where curves end: a power of two
     std::uint64_t seed = 1;
+    double seconds_per_spp = 0.0;  // estimated once, so that what is planned and what is done count alike; 0 = not yet
 
     // For headings.
     [[nodiscard]] std::string title() const { return stresses.empty() ? spec : spec + ": " + stresses; }
-    // For ids of figures and files: letters, digits and underscores, and unique enough beside a number.
+    // For ids of figures and files: letters, digits and underscores, another one for each scene.
     [[nodiscard]] std::string file_name() const;
     [[nodiscard]] double pixels() const { return static_cast<double>(width) * height; }
 };
@@ -60,7 +61,7 @@ public:
     [[nodiscard]] Shot take(const RenderSettings& settings, int spp, AcceleratorChoice accelerator, int crop_rows = 0);
     // The median of five builds, measured at the first call.
     [[nodiscard]] double build_seconds(AcceleratorChoice accelerator);
-    // Estimated by one sample a pixel after a warm-up.
+    // The subject's estimate, or one measured now.
     [[nodiscard]] double seconds_per_spp();
 
 private:
@@ -71,7 +72,6 @@ private:
     AcceleratorCache accelerators_;
     Renderer renderer_;
     std::array<double, kAcceleratorChoices.size()> build_{};
-    double seconds_per_spp_ = 0.0;
 };
 
 }  // namespace glint::chart

@@ -138,7 +138,7 @@ std::vector<Figure> chart_samplers(const Stage& stage, Table& targets) {
         "At {} samples sobol's relMSE is {}, random's {} ({:.1f} times as much), in {} against {}. To relMSE 0.01 sobol takes "
         "{}, jittered {}, "
         "random {}.",
-        subject.most_spp, short_number(last(sobol)), short_number(last(random)), last(random) / last(sobol),
+        sobol.points.back().spp, short_number(last(sobol)), short_number(last(random)), last(random) / last(sobol),
         seconds_text(sobol.points.back().total(sobol.build)), seconds_text(random.points.back().total(random.build)),
         time_to(sobol, kTargets[0]), time_to(jittered, kTargets[0]), time_to(random, kTargets[0]));
     const auto exponent = [](const Curve& c) { return c.exponent().value_or(Slope{}).slope; };

@@ -138,6 +138,7 @@ void chart_break_even(const Machine& machine, const std::string& scene, const st
         short_number(map.xs[last]), seconds_text(1.0e6 * costs[last][0].ray),
         costs[last][0].extrapolated ? " (scaled up from 16384)" : "", seconds_text(1.0e6 * costs[last][1].ray),
         seconds_text(1.0e6 * costs[last][2].ray), seconds_text(costs[last][1].build), seconds_text(costs[last][2].build));
+    figure.series.front().command = map.command;
     section.maps.push_back(std::move(map));
     section.figures.push_back(std::move(figure));
 }

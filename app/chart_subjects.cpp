@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -50,7 +51,7 @@ Subject subject_of(const Options& o, const std::string& spec, const std::string&
     bool whitted = false;
     if (!s.features.empty()) s.settings.features = edit_features(s.features, s.settings.features, whitted);
     s.seed = o.settings.seed == 0 ? 1 : o.settings.seed;
-    s.most_spp = o.spp > 0 ? o.spp : most_spp;
+    s.most_spp = static_cast<int>(std::bit_floor(static_cast<unsigned>(o.spp > 0 ? o.spp : most_spp)));
     if (o.width > 0) {
         s.width = o.width;
         s.height = o.height;
@@ -82,7 +83,10 @@ bool has_branches(const Subject& subject) {
 
 std::vector<Subject> subjects_of(const Options& o) {
     std::vector<Subject> list;
-    for (const std::string& spec : o.arguments) list.push_back(subject_of(o, spec, "", "", o.quick ? 64 : 256));
+    for (const std::string& spec : o.arguments) {
+        if (std::ranges::find(list, spec, &Subject::spec) == list.end())
+            list.push_back(subject_of(o, spec, "", "", o.quick ? 64 : 256));
+    }
     if (!list.empty()) return list;
     for (const Shipped& s : kShipped) {
         if (o.quick && s.quick_spp == 0) continue;

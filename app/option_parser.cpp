@@ -178,7 +178,7 @@ public:
              [this](auto, auto v) { o_.output = v; });
         app_.add_flag("--quick", o_.quick, "three scenes, fewer seeds and samples: under two minutes");
         resolution("image size; default about 80x60 in the scene's shape (--quick: 64x48)");
-        text("--spp", "N", "where curves end; default 256 samples a pixel (--quick: 64)",
+        text("--spp", "N", "where curves end, rounded down to a power of two; default 256 (--quick: 64)",
              [this](auto n, auto v) { o_.spp = number(n, v, 4, 65536, "a number of samples (4 to 65536)"); });
         text("--features", "LIST", "of every scene, as for render", [this](auto, auto v) { o_.features = v; });
         text("--threads", "N", "0 = all that the process may use, -1 = all but one",
