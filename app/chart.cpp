@@ -102,6 +102,14 @@ struct Sections {
         "errors of the fit.",
         {"scene", "sampler", "to 0.01", "to 0.001", "last relMSE", "after", "a"},
         {}};
+    Section error_bars{"errorbars",
+                       "The error bar: what the renderer says of itself",
+                       "From what each doubling of the samples changes in a picture the renderer estimates how far it is from "
+                       "its limit, without a "
+                       "reference. Here its estimate is divided by the error that the reference shows.",
+                       {},
+                       {},
+                       {}};
     Section accelerators{
         "accelerators",
         "Accelerators: the same error at other times",
@@ -159,7 +167,7 @@ void chart_scene(Bench& bench, const Effort& effort, const fs::path& folder, boo
     const auto add = [](Section& section, std::vector<Figure> figures) {
         for (Figure& f : figures) section.figures.push_back(std::move(f));
     };
-    add(s.samplers, chart_samplers(stage, s.targets));
+    add(s.samplers, chart_samplers(stage, s.targets, s.error_bars.figures));
     add(s.accelerators, chart_accelerators(stage));
     add(s.features, chart_features(stage));
     add(s.settings, chart_settings(stage, s.all_settings));
@@ -224,7 +232,7 @@ int run_chart(const Options& o) {
         fmt::format("Measured in {:.0f} s. Threads are not pinned; bands and medians hold what else the machine did.",
                     meter.elapsed())};
     if (stopped) c.notes.push_back("The run was stopped: what had been measured by then is shown.");
-    for (Section* section : {&s.samplers, &s.accelerators, &s.features, &s.settings, &s.scaling, &s.references}) {
+    for (Section* section : {&s.samplers, &s.error_bars, &s.accelerators, &s.features, &s.settings, &s.scaling, &s.references}) {
         const bool rows = std::ranges::any_of(section->tables, [](const Table& t) { return !t.rows.empty(); });
         if (!section->figures.empty() || !section->maps.empty() || rows) c.sections.push_back(std::move(*section));
     }

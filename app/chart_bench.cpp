@@ -102,6 +102,7 @@ Shot Bench::take(const RenderSettings& settings, int spp, AcceleratorChoice acce
     renderer_.resolve(shot.image);
     shot.seconds = p.seconds;
     shot.rays = p.rays;
+    shot.estimate = renderer_.error();
     return shot;
 }
 

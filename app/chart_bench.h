@@ -46,6 +46,7 @@ struct Shot {
     Image image;
     double seconds = 0.0;
     RayCounts rays;
+    ErrorEstimate estimate;  // the renderer's own
 };
 
 class Bench {

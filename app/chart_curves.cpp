@@ -1,6 +1,7 @@
 #include "app/chart_curves.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace glint::chart {
@@ -30,8 +31,19 @@ struct Sums {
 };
 
 struct Raw {
-    std::vector<double> seconds, errors;
-    double rays = 0.0;
+    std::vector<double> seconds, errors, honesty;
+    double rays = 0.0, covered = 0.0;
+
+    void add(const Shot& shot, double error) {
+        seconds.push_back(shot.seconds);
+        errors.push_back(error);
+        rays = static_cast<double>(shot.rays.total());
+        const ErrorEstimate& e = shot.estimate;
+        if (e.kind != ErrorEstimate::Kind::estimated || !(error > 0.0)) return;
+        const double truth = std::sqrt(error);
+        honesty.push_back(e.relrmse / truth);
+        if (e.low <= truth && truth <= e.high) covered += 1.0;
+    }
 };
 
 }  // namespace
@@ -65,9 +77,7 @@ std::vector<Curve> measure_curves(Bench& bench, const std::vector<Variant>& vari
             for (std::size_t i = 0; i < variants[v].spps.size(); ++i) {
                 const int spp = variants[v].spps[i];
                 const Shot shot = bench.take(settings, spp, variants[v].accelerator);
-                raw[v][i].seconds.push_back(shot.seconds);
-                raw[v][i].errors.push_back(relative_error(shot.image, *variants[v].reference));
-                raw[v][i].rays = static_cast<double>(shot.rays.total());
+                raw[v][i].add(shot, relative_error(shot.image, *variants[v].reference));
                 if (split && i + 1 == variants[v].spps.size()) sums[v].add(shot.image);
                 meter.did(per_spp * spp);
             }
@@ -78,8 +88,9 @@ std::vector<Curve> measure_curves(Bench& bench, const std::vector<Variant>& vari
         Curve c{variants[v].name, variants[v].settings, bench.build_seconds(variants[v].accelerator), {}, {}};
         for (std::size_t i = 0; i < raw[v].size(); ++i) {
             const Raw& r = raw[v][i];
-            c.points.push_back(
-                {variants[v].spps[i], median(r.seconds), median_deviation(r.seconds), median_band(r.errors), r.rays});
+            const double told = static_cast<double>(r.honesty.size());
+            c.points.push_back({variants[v].spps[i], median(r.seconds), median_deviation(r.seconds), median_band(r.errors),
+                                r.rays, median_band(r.honesty), told > 0.0 ? r.covered / told : 0.0});
         }
         if (split) c.split = sums[v].split(*variants[v].reference, static_cast<std::size_t>(seeds));
         curves.push_back(std::move(c));

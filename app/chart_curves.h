@@ -28,6 +28,8 @@ struct Measured {
     double seconds = 0.0, seconds_mad = 0.0;  // rendering alone: median and median absolute deviation
     Band error;                               // relMSE, the reference's noise taken off
     double rays = 0.0;
+    Band honesty;           // the renderer's own estimate of relRMSE over the true one; 0 where it makes none
+    double coverage = 0.0;  // share of the pictures whose 95 % interval holds the true one
     [[nodiscard]] double total(double build) const { return build + seconds; }
 };
 

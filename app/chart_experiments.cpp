@@ -92,6 +92,36 @@ const Curve& named(const std::vector<Curve>& curves, std::string_view name) {
     return *std::ranges::find(curves, name, &Curve::name);
 }
 
+// The renderer's estimate of its error over the error it has.
+Figure error_bar_figure(const Stage& stage, const std::vector<Curve>& curves) {
+    Figure f = error_figure(stage, "errorbar", curves, true);
+    f.y.label = "estimated over true relRMSE";
+    f.levels = {1.0};
+    f.extra = {"coverage"};
+    double covered = 0.0, points = 0.0;
+    std::string last;
+    std::vector<Series> told;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        Series s = f.series[i];
+        s.points.clear();
+        for (const Measured& m : curves[i].points) {
+            if (!(m.honesty.middle > 0.0)) continue;
+            s.points.push_back({static_cast<double>(m.spp), m.honesty.middle, m.honesty.low, m.honesty.high, {m.coverage}});
+            covered += m.coverage;
+            points += 1.0;
+        }
+        if (s.points.empty()) continue;
+        last += fmt::format("{}{:.2f} for {}", last.empty() ? "" : ", ", s.points.back().y, s.name);
+        told.push_back(std::move(s));
+    }
+    f.series = std::move(told);
+    f.caption = fmt::format(
+        "With the most samples the estimate is {} of the true error (1 is right). Its 95 % interval holds the true error in "
+        "{:.0f} % of all these pictures.",
+        last.empty() ? std::string("nothing") : last, points > 0.0 ? 100.0 * covered / points : 0.0);
+    return f;
+}
+
 }  // namespace
 
 std::string seconds_text(double s) {
@@ -118,7 +148,7 @@ Figure error_figure(const Stage& stage, const std::string& what, const std::vect
     return f;
 }
 
-std::vector<Figure> chart_samplers(const Stage& stage, Table& targets) {
+std::vector<Figure> chart_samplers(const Stage& stage, Table& targets, std::vector<Figure>& error_bars) {
     const Subject& subject = stage.subject();
     stage.meter.say(fmt::format("{}: samplers", subject.spec));
     const std::vector<Curve> curves = measure_curves(stage.bench, sampler_variants(stage.bench, &stage.references, stage.effort),
@@ -147,6 +177,7 @@ std::vector<Figure> chart_samplers(const Stage& stage, Table& targets) {
         "0.50 for random "
         "anywhere, about 0.75 for both others where a pixel holds one edge, less with every dimension that has edges of its own.",
         exponent(sobol), exponent(jittered), exponent(random));
+    error_bars.push_back(error_bar_figure(stage, curves));
     return {std::move(seconds), std::move(samples)};
 }
 
@@ -164,6 +195,7 @@ std::vector<Figure> chart_accelerators(const Stage& stage) {
     Figure f = error_figure(stage, "accelerators", curves, false);
     std::string builds;
     for (std::size_t i = 0; i < curves.size(); ++i) {
+        f.series[i].colour = static_cast<int>(std::ranges::find(kAcceleratorNames, curves[i].name) - kAcceleratorNames.begin());
         f.series[i].command =
             render_command(subject, curves[i].settings, curves[i].points.back().spp, fmt::format("--accel {}", curves[i].name));
         if (curves[i].name != "none")

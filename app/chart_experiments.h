@@ -37,8 +37,9 @@ struct Stage {
     [[nodiscard]] const Subject& subject() const { return bench.subject(); }
 };
 
-// Every sampler: error over seconds and over samples; a row of `targets` for each.
-[[nodiscard]] std::vector<Figure> chart_samplers(const Stage& stage, Table& targets);
+// Every sampler: error over seconds and over samples; a row of `targets` for each, and what the renderer itself says of its
+// error.
+[[nodiscard]] std::vector<Figure> chart_samplers(const Stage& stage, Table& targets, std::vector<Figure>& error_bars);
 // No accelerator, grid and bvh: the same bytes, other seconds.
 [[nodiscard]] std::vector<Figure> chart_accelerators(const Stage& stage);
 // From Whitted's rays on, a feature more with each curve.
