@@ -74,13 +74,13 @@ def write_mitsuba(path, sampler):
         return f'<bsdf type="diffuse"><rgb name="reflectance" value="{numbers(color)}"/></bsdf>'
 
     shapes = (f'<shape type="rectangle"><transform name="to_world"><scale value="{SIDE / 2}"/><rotate x="1" angle="90"/>'
-              f'<translate value="{numbers(LIGHT)}"/></transform><emitter type="area"><rgb name="radiance" value="{radiance:.7g}"/>'
-              '</emitter></shape>\n'
-              f'<shape type="rectangle"><transform name="to_world"><scale value="{REACH}"/><rotate x="1" angle="-90"/></transform>'
-              f'{matte(FLOOR)}</shape>\n')
+              f'<translate value="{numbers(LIGHT)}"/></transform><emitter type="area">'
+              f'<rgb name="radiance" value="{radiance:.7g}"/></emitter></shape>\n'
+              f'<shape type="rectangle"><transform name="to_world"><scale value="{REACH}"/><rotate x="1" angle="-90"/>'
+              f'</transform>{matte(FLOOR)}</shape>\n')
     for x, y, z, r, color in balls():
-        shapes += (f'<shape type="sphere"><point name="center" value="{numbers([x, y, z])}"/><float name="radius" value="{r:.7g}"/>'
-                   f'{matte(color)}</shape>\n')
+        shapes += (f'<shape type="sphere"><point name="center" value="{numbers([x, y, z])}"/>'
+                   f'<float name="radius" value="{r:.7g}"/>{matte(color)}</shape>\n')
     with open(path, "w", encoding="ascii") as out:
         out.write('<scene version="3.0.0">\n<integrator type="direct"><integer name="emitter_samples" value="1"/>'
                   '<integer name="bsdf_samples" value="0"/></integrator>\n'
