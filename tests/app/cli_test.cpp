@@ -213,13 +213,12 @@ TEST_F(CommandLine, SignalsSaveWhatWasRendered) {
 TEST_F(CommandLine, HelpVersionListAndInfoGoToStdout) {
     const Outcome help = glint("render --help");
     EXPECT_EQ(help.code, 0);
-    for (const char* option :
-         {"--resolution", "--spp", "--features", "--accel", "--isa", "--crop", "--stats", "--hdri-file", "--camera-view-up"}) {
+    for (const char* option : {"--resolution", "--spp", "--features", "--accel", "--isa", "--crop", "--stats", "--hdri-file",
+                               "--camera-view-up", "--preset", "--noise", "--convergence"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     }
     // What is not built yet is not promised.
-    for (const char* option : {"--preset", "--checkpoint"})
-        EXPECT_EQ(help.out.find(option), std::string::npos) << option;
+    for (const char* option : {"--tone-map", "--checkpoint"}) EXPECT_EQ(help.out.find(option), std::string::npos) << option;
     EXPECT_NE(glint("--help").out.find("Keys"), std::string::npos);
     EXPECT_NE(glint("--version").out.find("glint "), std::string::npos);
     const Outcome list = glint("list");
