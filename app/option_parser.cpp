@@ -26,13 +26,17 @@ constexpr std::string_view kUsage =
     "SCENE is a .p3f, .nff, .gltf, .glb, .ply or .ply.gz file, or builtin:NAME[,key=value...].\n";
 
 // Settings on the measured front of error against seconds: `glint chart` compares each cut-off with none at equal time. A weight
-// below 0.1 costs less light than four samples err by, one below 0.01 less than 64 do; beyond that nothing is left out.
+// below 0.1 costs less light than four samples err by, one below 0.01 less than 64 do; beyond that nothing is left out. From 16
+// samples on `joint` errs as little as `sobol` or less, in depth of field a third.
 struct Preset {
     std::string_view name;
     int spp, depth;
     float cutoff;
+    SamplerKind sampler;
 };
-constexpr std::array<Preset, 3> kPresets{{{"draft", 4, 8, 0.1f}, {"good", 64, 8, 0.01f}, {"reference", 1024, 16, 0.0f}}};
+constexpr std::array<Preset, 3> kPresets{{{"draft", 4, 8, 0.1f, SamplerKind::sobol},
+                                          {"good", 64, 8, 0.01f, SamplerKind::joint},
+                                          {"reference", 1024, 16, 0.0f, SamplerKind::joint}}};
 
 // One CLI::App that fills `o`; each value is checked where it is declared.
 class Parser {
@@ -76,7 +80,8 @@ public:
         text("--cutoff", "X", "branches of a weight up to X are not followed; default 0. Darkens by at most X times their light",
              [this](auto n, auto v) { o_.settings.cutoff = number(n, v, 0.0f, 1.0f, "a weight (0 to 1)"); });
         text("--preset", "draft|good|reference",
-             "--spp 4 --cutoff 0.1, --spp 64 --cutoff 0.01 or --spp 1024 --depth 16; what is given beside it counts more",
+             "--spp 4 --cutoff 0.1, --spp 64 --cutoff 0.01 --sampler joint or --spp 1024 --depth 16 --sampler joint; what is "
+             "given beside it counts more",
              [this](auto n, auto v) {
                  std::array<std::string_view, kPresets.size()> names;
                  std::transform(kPresets.begin(), kPresets.end(), names.begin(), [](const Preset& p) { return p.name; });
@@ -245,6 +250,7 @@ private:
         if (app_.count("--spp") == 0) o_.spp = preset_->spp;
         if (app_.count("--depth") == 0) o_.settings.depth = preset_->depth;
         if (app_.count("--cutoff") == 0) o_.settings.cutoff = preset_->cutoff;
+        if (app_.count("--sampler") == 0) o_.settings.sampler = preset_->sampler;
     }
 
     [[nodiscard]] std::string option_help() const {

@@ -16,6 +16,8 @@ TEST(Preset, SetsSamplesDepthAndCutoff) {
     EXPECT_EQ(parsed({"--preset", "draft"}).settings.cutoff, 0.1f);
     EXPECT_EQ(parsed({"--preset", "good"}).spp, 64);
     EXPECT_EQ(parsed({"--preset", "good"}).settings.cutoff, 0.01f);
+    EXPECT_EQ(parsed({"--preset", "good"}).settings.sampler, SamplerKind::joint);
+    EXPECT_EQ(parsed({"--preset", "good", "--sampler", "random"}).settings.sampler, SamplerKind::random);
     const Options reference = parsed({"--preset", "reference"});
     EXPECT_EQ(reference.spp, 1024);
     EXPECT_EQ(reference.settings.depth, 16);
