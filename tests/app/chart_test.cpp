@@ -173,8 +173,9 @@ TEST_F(ChartCommand, BadUseIsRefusedBeforeAnythingIsMeasured) {
 }
 
 TEST_F(ChartCommand, InterruptedItWritesWhatItHas) {
-    const Outcome r = glint("chart builtin:cornell --resolution 512x512 --quiet -o " + path("c"),
-                            "PATH=$PATH timeout --preserve-status -s INT 1");
+    const Outcome r =
+        glint("chart builtin:cornell --resolution 512x512 --quiet -o " + path("c"),
+              "PATH=$PATH timeout --foreground --preserve-status -s INT 1");  // one signal: a second ends it at once
     EXPECT_EQ(r.code, 130) << r.err;
     EXPECT_NE(contents(path("c/index.html")).find("The run was stopped"), std::string::npos);
     EXPECT_TRUE(nlohmann::json::accept(contents(path("c/chart.json"))));
