@@ -13,8 +13,7 @@ RayScalars scalars_of(const BvhView& bvh, const Ray& ray) noexcept {
 }
 
 void closest(const BvhView& bvh, const Ray& ray, Hit& best) noexcept {
-    BvhRef unused = 0;
-    traverse<false>(bvh, ray, scalars_of(bvh, ray), best, unused, [](BvhRef) {});
+    traverse_closest(bvh, ray, scalars_of(bvh, ray), best, [](BvhRef) {});
 }
 
 // The leaf that blocked this thread's last ray, if it was blocked, and the number of its tree: what blocks a ray often blocks
@@ -33,15 +32,6 @@ bool occluded(const BvhView& bvh, const Ray& ray) noexcept {
     traverse<true>(bvh, ray, scalars_of(bvh, ray), best, blocker, [](BvhRef) {});
     last = {bvh.tree, blocker};
     return best.primitive != kNoPrimitive;
-}
-
-// Unusable rays keep what they had.
-void load(const RayBatch& rays, int i, Ray& ray) noexcept {
-    for (int k = 0; k < 3; ++k) {
-        (&ray.origin.x)[k] = rays.origin[k][i];
-        (&ray.direction.x)[k] = rays.direction[k][i];
-    }
-    ray.t_max = rays.t_max[i];
 }
 
 void closest_in_flight(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) noexcept {
@@ -227,21 +217,6 @@ void occluded_coherent(const BvhView& bvh, const RayBatch& rays, bool* result) n
     });
 }
 
-// One ray after the other, made ready sixteen at a time.
-template <class Trace>
-void for_each_prepared(const BvhView& bvh, const RayBatch& rays, Trace trace) noexcept {
-    PreparedRays prepared;
-    for (int i = 0; i < rays.count; ++i) {
-        if (i % kGroup == 0) prepared.prepare(rays, i, bvh.magnitude);
-        if (!prepared.usable(i % kGroup)) continue;
-        Ray ray;
-        load(rays, i, ray);
-        RayScalars scalars;
-        prepared.share(i % kGroup, scalars);
-        trace(i, ray, scalars);
-    }
-}
-
 void closest_batch(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) noexcept {
     if (rays.order != RayOrder::divergent) return closest_coherent(bvh, rays, hits);
     if (bvh.bytes > kCached) return closest_in_flight(bvh, rays, hits);
@@ -250,8 +225,7 @@ void closest_batch(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) noe
         best.t = hits.t[i];
         best.primitive = hits.primitive[i];
         const PrimitiveId before = best.primitive;
-        BvhRef unused = 0;
-        traverse<false>(bvh, ray, scalars, best, unused, [](BvhRef) {});
+        traverse_closest(bvh, ray, scalars, best, [](BvhRef) {});
         if (best.primitive == before) return;
         hits.t[i] = best.t;
         hits.u[i] = best.u;
@@ -277,8 +251,7 @@ void count_closest(const BvhView& bvh, const Ray& ray, TraversalCounts& counts) 
     Hit best;
     best.t = ray.t_max;
     ++counts.rays;
-    BvhRef unused = 0;
-    traverse<false>(bvh, ray, scalars_of(bvh, ray), best, unused, [&](BvhRef ref) {
+    traverse_closest(bvh, ray, scalars_of(bvh, ray), best, [&](BvhRef ref) {
         if ((ref & kLeafBit) == 0) {
             ++counts.nodes;
             return;

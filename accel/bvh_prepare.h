@@ -1,4 +1,4 @@
-// prepare() for sixteen rays of a batch at once, and one ray's share of it.
+// prepare() for sixteen rays of a batch at once, one ray's share of it, and a walk over a batch by both.
 // Invariant: the values of prepare(), operation for operation.
 #pragma once
 
@@ -79,5 +79,29 @@ private:
     int first_ = 0;
     unsigned axis_x_ = 0, axis_y_ = 0, usable_ = 0, forward_[3] = {};
 };
+
+// One ray of the batch.
+inline void load(const RayBatch& rays, int i, Ray& ray) noexcept {
+    for (int k = 0; k < 3; ++k) {
+        (&ray.origin.x)[k] = rays.origin[k][i];
+        (&ray.direction.x)[k] = rays.direction[k][i];
+    }
+    ray.t_max = rays.t_max[i];
+}
+
+// One ray after the other, made ready sixteen at a time.
+template <class Trace>
+void for_each_prepared(const BvhView& bvh, const RayBatch& rays, Trace trace) noexcept {
+    PreparedRays prepared;
+    for (int i = 0; i < rays.count; ++i) {
+        if (i % kGroup == 0) prepared.prepare(rays, i, bvh.magnitude);
+        if (!prepared.usable(i % kGroup)) continue;
+        Ray ray;
+        load(rays, i, ray);
+        RayScalars scalars;
+        prepared.share(i % kGroup, scalars);
+        trace(i, ray, scalars);
+    }
+}
 
 }  // namespace glint::GLINT_ISA

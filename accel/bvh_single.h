@@ -146,4 +146,12 @@ template <bool any, class Visit>
     }
 }
 
+// The closest hit: no leaf is worth asking first.
+template <class Visit>
+[[gnu::always_inline]] inline void traverse_closest(const BvhView& bvh, const Ray& ray, const RayScalars& scalars, Hit& best,
+                                                    Visit visit) noexcept {
+    BvhRef none = 0;
+    traverse<false>(bvh, ray, scalars, best, none, visit);
+}
+
 }  // namespace glint::GLINT_ISA
