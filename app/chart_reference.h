@@ -11,7 +11,7 @@
 
 #include <glm/glm.hpp>
 
-#include "core/image.h"
+#include "core/error_metrics.h"
 
 namespace glint::chart {
 
@@ -22,12 +22,12 @@ struct Reference {
     std::vector<glm::dvec3> variance;  // squared standard error of the mean, from the scatter of the replicates
 
     [[nodiscard]] double samples() const { return static_cast<double>(replicates) * spp; }
-    // mean variance / (mean^2 + 0.01): what the reference's own noise adds to every relMSE against it.
+    // mean variance / relative_scale(mean): what the reference's own noise adds to every relMSE against it.
     [[nodiscard]] double relative_variance() const;
 };
 
 // The denominator of relMSE (Rousselle, Knaus & Zwicker 2011).
-[[nodiscard]] inline double relative_scale(double reference) { return reference * reference + 0.01; }
+[[nodiscard]] inline double relative_scale(double reference) { return reference * reference + kRelativeFloor; }
 // relMSE of a picture of the same size, what the reference's noise adds taken off: near the reference it may fall below 0.
 [[nodiscard]] double relative_error(const Image& image, const Reference& reference);
 // Half the mean squared relative difference of two pictures with equal settings: the relMSE of either, without a reference.

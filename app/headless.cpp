@@ -82,7 +82,8 @@ public:
         next_ = p.seconds + (terminal_ ? 0.2 : 5.0);
         if (p.seconds < 1.0) return;
         const std::string error = error_text(renderer.error());
-        fmt::print(stderr, "{}{}-{} of {} spp, {:.1f} s, {:.2f} Mrays/s{}{}{}", terminal_ ? "\r" : "", p.spp_min, p.spp_max, spp_,
+        const std::string limit = spp_ < kMaxSamples ? fmt::format(" of {}", spp_) : "";
+        fmt::print(stderr, "{}{}-{}{} spp, {:.1f} s, {:.2f} Mrays/s{}{}{}", terminal_ ? "\r" : "", p.spp_min, p.spp_max, limit,
                    p.seconds, static_cast<double>(p.rays.total()) / p.seconds * 1e-6, error.empty() ? "" : ", ", error,
                    terminal_ ? "  " : "\n");
         shown_ = true;

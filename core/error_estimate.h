@@ -1,6 +1,5 @@
 // How far a picture still is from its limit, told by how much each doubling of its samples has changed it; and when to stop.
-// Knows no renderer and no picture, only the sums below. Errors are relRMSE: the root of mean (I-truth)^2 / (truth^2 + 0.01)
-// over pixels and channels, as in error_metrics.h.
+// Knows no renderer and no picture, only the sums below. Errors are relRMSE: the root of relMSE, as in error_metrics.h.
 // Why it works for stratified samplers too: let I(N) be a pixel's mean of N samples. Where its halves are exchangeable
 // (Owen-scrambled Sobol' at powers of two, blocks of strata, independent samples), E (I(2N) - I(N))^2 = MSE(N) - MSE(2N) exactly.
 // So MSE(N) is the sum of all changes still to come, which follow the power law that those seen so far have.
@@ -14,6 +13,7 @@
 
 #include <glm/glm.hpp>
 
+#include "core/error_metrics.h"
 #include "core/settings.h"
 
 namespace glint {
@@ -43,11 +43,10 @@ using Doublings = std::array<Doubling, kDoublings>;
     return spp > 0 ? static_cast<std::size_t>(std::bit_width(static_cast<std::uint32_t>(spp))) - 1 : 0;
 }
 
-// mean over channels of (mean - before)^2 / (truth^2 + 0.01). For truth^2 stands mean^2 - (mean - before)^2 / 2, between mean^2,
-// in which a spark would hide its own error, and the product of the two halves' means, which is unbiased but too small where a
-// half is dark by chance.
+// mean over channels of (mean - before)^2 / (truth^2 + kRelativeFloor). For truth^2 stands mean^2 - (mean - before)^2 / 2,
+// between mean^2, in which a spark would hide its own error, and the product of the two halves' means, which is unbiased but too
+// small where a half is dark by chance.
 [[nodiscard]] inline double relative_change(glm::dvec3 mean, glm::dvec3 before) {
-    constexpr double kRelativeFloor = 1e-2;
     const glm::dvec3 change = mean - before, squared = change * change;
     const glm::dvec3 ratio = squared / (glm::max(mean * mean - 0.5 * squared, 0.0) + kRelativeFloor);
     return (ratio.x + ratio.y + ratio.z) / 3.0;

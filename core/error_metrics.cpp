@@ -10,8 +10,6 @@
 namespace glint {
 namespace {
 
-// Rousselle's guard against dark pixels, added to the square of the reference.
-constexpr double kRelativeFloor = 1e-2;
 constexpr double kPercentile = 0.99;
 
 bool finite(glm::vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }

@@ -16,10 +16,13 @@ namespace glint {
 enum class Metric { rmse, relmse, mae, psnr, flip };
 inline constexpr std::array<std::string_view, 5> kMetricNames{"rmse", "relmse", "mae", "psnr", "flip"};
 
+// What relative errors add to the square of the truth, so that dark pixels do not outweigh all others.
+inline constexpr double kRelativeFloor = 0.01;
+
 // With a = picture, r = reference. The real-valued ones are NaN where no pixel is finite.
 struct ErrorMetrics {
     double rmse = 0.0;    // sqrt(mean (a-r)^2)
-    double relmse = 0.0;  // mean (a-r)^2 / (r^2 + 0.01), the denominator squared: Rousselle, Knaus & Zwicker 2011
+    double relmse = 0.0;  // mean (a-r)^2 / (r^2 + kRelativeFloor), the denominator squared: Rousselle, Knaus & Zwicker 2011
     double mae = 0.0;     // mean |a-r|
     double psnr = 0.0;    // dB: 10 log10(1 / mean (a-r)^2) with both clamped to 0..1, so its peak is display white, 1;
                           // infinite where nothing that a display shows differs

@@ -56,6 +56,13 @@ TEST_F(ChartReference, IsTheMeanOfItsReplicatesAndKnowsItsError) {
     EXPECT_NEAR(relative_error(flat(0.8f), reference), (0.04 - 0.01 / 3.0) / 0.37, 1e-6);
 }
 
+TEST_F(ChartReference, WithoutNoiseErrorsAreThoseOfCompare) {
+    const Image truth{2, 1, {{0.1f, 0.4f, 2.0f}, {0.0f, 0.02f, 0.7f}}}, image{2, 1, {{0.15f, 0.3f, 2.5f}, {0.01f, 0.0f, 0.9f}}};
+    const Reference exact = average(
+        1, 2, [&](int) { return truth; }, [](const Reference&) { return false; });
+    EXPECT_NEAR(relative_error(image, exact), error_metrics(image, truth).relmse, 1e-12);
+}
+
 TEST_F(ChartReference, C_01_ErrorsAreFreeOfTheReferencesOwnNoise) {
     std::mt19937 random(1);
     const auto noisy = [&](double sigma) {

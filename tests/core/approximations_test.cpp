@@ -116,13 +116,7 @@ std::shared_ptr<const Scene> half_hidden_light() {
     SceneBuilder b;
     b.add(plane_at(glm::dvec3(0.0), {0, 1, 0}), b.add_material(matte(1.0f)));
     b.add(Box{{-0.2f, 1.0f, -0.2f}, {0.4f, 1.1f, 0.4f}}, b.add_material(black()));
-    Light light;
-    light.shape = Light::Shape::quad;
-    light.falloff = Light::Falloff::physical;
-    light.position = {-1, 2, -1};
-    light.edge1 = {2, 0, 0};
-    light.edge2 = {0, 0, 2};
-    b.scene().lights.push_back(light);
+    b.scene().lights.push_back(ceiling_light());
     return b.finish();
 }
 

@@ -8,17 +8,6 @@ namespace {
 
 using namespace test;
 
-// A rectangle 2 x 2 at height 2, facing down, of radiance 1.
-Light ceiling_light() {
-    Light light;
-    light.shape = Light::Shape::quad;
-    light.falloff = Light::Falloff::physical;
-    light.position = {-1, 2, -1};
-    light.edge1 = {2, 0, 0};
-    light.edge2 = {0, 0, 2};
-    return light;
-}
-
 Light ball_light(glm::vec3 center, float radius) {
     Light light;
     light.shape = Light::Shape::sphere;

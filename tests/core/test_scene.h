@@ -56,6 +56,17 @@ inline Light sun(glm::dvec3 towards) {
     return light;
 }
 
+// A rectangle 2 x 2 at height 2, facing down, of radiance 1.
+inline Light ceiling_light() {
+    Light light;
+    light.shape = Light::Shape::quad;
+    light.falloff = Light::Falloff::physical;
+    light.position = {-1, 2, -1};
+    light.edge1 = {2, 0, 0};
+    light.edge2 = {0, 0, 2};
+    return light;
+}
+
 // The plane through `point` with the (not necessarily unit) normal `n`.
 inline Plane plane_at(glm::dvec3 point, glm::dvec3 n) {
     const glm::dvec3 unit = n / std::sqrt(glm::dot(n, n));
