@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "accel/bvh.h"
-#include "accel/bvh_refs.h"
 #include "accel/bvh_sets.h"
 #include "accel/bvh_writer.h"
 
@@ -14,25 +13,31 @@ namespace {
 constexpr std::uint32_t kTaskSize = 1u << 14;
 // Tasks whose results wait in memory at a time before they join the tree.
 constexpr std::size_t kBatch = 16;
+constexpr std::size_t kRootUnits = sizeof(BvhNode) / kBvhUnit;
 
 template <class Sets>
 class Builder {
 public:
     Builder(const Geometry& geometry, const ParallelFor& parallel_for)
-        : geometry_(geometry), parallel_for_(parallel_for), sets_(geometry, parallel_for) {}
+        : parallel_for_(parallel_for), sets_(geometry, parallel_for) {}
 
     BvhTree build() {
         const Candidate whole = sets_.whole(parallel_for_);
+        BvhPart ahead = sets_.ahead();
+        // The root comes first, the other nodes behind what stands there already.
         BvhPart top;
-        top.append_node();
-        fill_node(top, 0, whole, 1, true);
+        top.origin = ahead.units.size() - kRootUnits;
+        fill_node(top, top.append_node(), whole, 1, true);
         BvhTree tree;
         tree.bounds = box_of(whole.range.bounds);
-        tree.units.reserve(top.units.size() + expected_units(whole.primitives));
-        tree.units.resize(top.units.size());
-        tree.nodes = top.nodes, tree.leaves = top.leaves, tree.depth = top.depth;
+        tree.units = std::move(ahead.units);
+        tree.nodes = top.nodes, tree.leaves = ahead.leaves + top.leaves, tree.depth = top.depth;
+        top.leaf_sides += ahead.leaf_sides;
+        const std::size_t top_units = tree.units.size();
+        tree.units.resize(top_units + top.units.size() - kRootUnits);
         for (std::size_t first = 0; first < tasks_.size(); first += kBatch) build_some(first, top, tree);
-        std::ranges::copy(top.units, tree.units.begin());
+        std::copy_n(top.units.begin(), kRootUnits, tree.units.begin());
+        std::copy(top.units.begin() + kRootUnits, top.units.end(), tree.units.begin() + static_cast<std::ptrdiff_t>(top_units));
         if (tree.leaves > 0) tree.leaf_extent = static_cast<float>(top.leaf_sides / static_cast<double>(tree.leaves));
         return tree;
     }
@@ -50,8 +55,6 @@ private:
         _mm_store_ps(hi, box.hi);
         return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
     }
-    // Room that usually suffices. Too much costs addresses, as pages never written are never there.
-    static std::size_t expected_units(std::size_t primitives) { return primitives + primitives / 2 + 64; }
 
     // A batch of tasks by all threads, then their results behind the tree's end. In batches, so that the memory the parts are
     // written to is still in a cache when it is used again.
@@ -61,7 +64,7 @@ private:
             const Task& task = tasks_[first + i];
             BvhPart& part = parts_[i];
             part.clear();
-            part.units.reserve(expected_units(task.candidate.primitives));
+            part.units.reserve(kTaskSize + kTaskSize / 2);
             fill_node(part, part.append_node(), task.candidate, task.level, false);
         });
         std::array<std::size_t, kBatch> offsets;
@@ -79,7 +82,7 @@ private:
         }
         tree.units.resize(size);
         parallel_for_(n, [&](std::size_t i) {
-            parts_[i].move_references(static_cast<BvhRef>(offsets[i]));
+            parts_[i].move_references(static_cast<BvhRef>(offsets[i]), !Sets::kLeavesAhead);
             std::ranges::copy(parts_[i].units, tree.units.begin() + static_cast<std::ptrdiff_t>(offsets[i]));
         });
     }
@@ -103,10 +106,10 @@ private:
         std::array<Box4, kBvhWidth> boxes;
         for (std::size_t i = 0; i < n; ++i) boxes[i] = children[i].range.bounds;
         write_bounds(part.node(node), std::span(boxes).first(n));
-        append_leaves(part, node, std::span(children).first(n));
+        sets_.write_leaves(part, node, std::span(children).first(n));
         for (std::size_t i = 0; i < n; ++i) {
             if (children[i].leaf) continue;
-            if (top && children[i].primitives <= kTaskSize) {
+            if (top && children[i].range.count * Sets::kPrimitives <= kTaskSize) {
                 tasks_.push_back({children[i], level + 1, node, i});
                 continue;
             }
@@ -116,27 +119,6 @@ private:
         }
     }
 
-    // The leaves of a node together, so that what they need is on its way while others are written.
-    void append_leaves(BvhPart& part, std::size_t node, std::span<const Candidate> children) {
-        std::array<LeafIds, kBvhWidth> ids;
-        std::array<std::span<PrimitiveId>, kBvhWidth> some;
-        for (std::size_t i = 0; i < children.size(); ++i) {
-            if (!children[i].leaf) continue;
-            some[i] = sets_.gather(children[i], ids[i]);
-            for (const PrimitiveId id : some[i]) fetch_indices(geometry_, id);
-        }
-        for (std::size_t i = 0; i < children.size(); ++i) {
-            for (const PrimitiveId id : some[i]) fetch_vertices(geometry_, id);
-        }
-        for (std::size_t i = 0; i < children.size(); ++i) {
-            if (!children[i].leaf) continue;
-            part.count_leaf_extent(children[i].range.bounds);
-            const BvhRef leaf = part.append_leaf(geometry_, some[i]);
-            part.node(node).child[i] = leaf;
-        }
-    }
-
-    const Geometry& geometry_;
     const ParallelFor& parallel_for_;
     Sets sets_;
     std::vector<Task> tasks_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <utility>
 
 #include "accel/bvh_refs.h"
 
@@ -12,17 +13,7 @@ namespace {
 constexpr int kBitsPerAxis = 10;
 constexpr int kDigitBits = 10;  // of the radix sort: three passes
 constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
-// Ranges of the curve that one task gathers.
-constexpr std::size_t kGatherSize = 1u << 13;
-// Clusters' sizes are floats, which count no further than 2^24.
-constexpr std::size_t kMaxCluster = 1u << 23;
-constexpr std::size_t kClusterSize = 40;
-
-struct Key {
-    std::uint32_t code;
-    PrimitiveId id;
-};
-using Keys = std::vector<Key, HugePageAllocator<Key>>;
+using Table = std::array<std::uint32_t, kDigits>;
 
 // Maps twice a centre to the curve's cell.
 struct Curve {
@@ -78,94 +69,61 @@ Curve fit_curve(const Geometry& geometry) {
                                          scale < kInfinity ? scale : 0.0f, 0.0f)};
 }
 
-// Sorts by code, equal ones by id: least digit first, each chunk counting and moving its own keys.
-void sort(Keys& keys, const ParallelFor& parallel_for) {
-    Keys other(keys.size());
-    // Few chunks, for each has a table of its own.
-    const std::size_t chunks = std::clamp<std::size_t>(keys.size() / kChunk, 1, 16);
-    const std::size_t chunk_size = (keys.size() + chunks - 1) / chunks;
-    std::vector<std::array<std::uint32_t, kDigits>> tables(chunks);
-    const auto chunk_of = [&](const Keys& k, std::size_t i) {
-        const std::size_t begin = std::min(i * chunk_size, k.size());
-        return std::span(k).subspan(begin, std::min(chunk_size, k.size() - begin));
-    };
-    for (int shift = 0; shift < 3 * kBitsPerAxis; shift += kDigitBits) {
-        const auto digit = [shift](const Key& k) { return k.code >> shift & (kDigits - 1); };
-        parallel_for(chunks, [&](std::size_t i) {
-            tables[i].fill(0);
-            for (const Key& k : chunk_of(keys, i)) ++tables[i][digit(k)];
-        });
-        std::uint32_t sum = 0;
-        for (std::size_t d = 0; d < kDigits; ++d) {
-            for (auto& table : tables) sum += std::exchange(table[d], sum);
-        }
-        parallel_for(chunks, [&](std::size_t i) {
-            for (const Key& k : chunk_of(keys, i)) other[tables[i][digit(k)]++] = k;
-        });
-        keys.swap(other);
-    }
-}
-
-struct Cell {
-    std::uint32_t first, last;
-};
-
-// Cuts where the highest bit that differs changes, until `size` is not exceeded or all codes agree.
-void cut_cells(std::span<const Key> keys, Cell cell, std::size_t size, std::vector<Cell>& cells) {
-    const std::uint32_t differ = keys[cell.first].code ^ keys[cell.last - 1].code;
-    const std::size_t count = cell.last - cell.first;
-    if (count <= size || (differ == 0 && count <= kMaxCluster)) return cells.push_back(cell);
-    std::uint32_t middle = cell.first + static_cast<std::uint32_t>(count / 2);
-    if (differ != 0) {
-        const std::uint32_t bit = std::bit_floor(differ);
-        const auto begin = keys.begin() + cell.first, end = keys.begin() + cell.last;
-        middle = static_cast<std::uint32_t>(
-            std::partition_point(begin, end, [bit](const Key& k) { return (k.code & bit) == 0; }) - keys.begin());
-    }
-    cut_cells(keys, {cell.first, middle}, size, cells);
-    cut_cells(keys, {middle, cell.last}, size, cells);
-}
-
-// The references of a cell's members and of its clusters.
-void gather(const Geometry& geometry, std::span<const Key> keys, Cell cell, BuildRefs& refs, BuildRefs& clusters) {
-    std::vector<Cell> cells;
-    cut_cells(keys, cell, kClusterSize, cells);
-    clusters.reserve(cells.size());
-    for (const Cell& c : cells) {
-        Box4 box;
-        for (std::uint32_t i = c.first; i < c.last; ++i) {
-            fetch_indices(geometry, keys[std::min<std::size_t>(i + 32, keys.size() - 1)].id);
-            fetch_vertices(geometry, keys[std::min<std::size_t>(i + 16, keys.size() - 1)].id);
-            const Box4 bounds = bounds_of(geometry, keys[i].id);
-            refs[i] = make_ref(bounds, keys[i].id, 1.0f);
-            box.grow(bounds);
-        }
-        clusters.push_back(make_ref(box, c.first, static_cast<float>(c.last - c.first)));
-    }
-}
+std::size_t digit_of(const CurveKey& key, int shift) { return key.code >> shift & (kDigits - 1); }
 
 }  // namespace
 
-void cluster_along_curve(const Geometry& geometry, const ParallelFor& parallel_for, BuildRefs& refs, BuildRefs& clusters) {
-    Keys keys(geometry.bounded_count());
-    if (keys.empty()) return;
+// Least digit first, each chunk counting and moving its own keys.
+CurveKeys sort_along_curve(const Geometry& geometry, const ParallelFor& parallel_for) {
+    CurveKeys keys(geometry.bounded_count());
+    if (keys.empty()) return keys;
+    // Few chunks, for each has a table of its own.
+    const std::size_t chunks = std::clamp<std::size_t>(keys.size() / kChunk, 1, 16);
+    const std::size_t chunk_size = (keys.size() + chunks - 1) / chunks;
+    std::vector<Table> tables(chunks);
+    const auto chunk_of = [&](const CurveKeys& k, std::size_t i) {
+        const std::size_t begin = std::min(i * chunk_size, k.size());
+        return std::span(k).subspan(begin, std::min(chunk_size, k.size() - begin));
+    };
     const Curve curve = fit_curve(geometry);
-    parallel_for(chunks_of(keys.size()), [&](std::size_t i) {
-        for_primitives(geometry, i * kChunk, (i + 1) * kChunk, [&](std::size_t at, PrimitiveId id) {
+    parallel_for(chunks, [&](std::size_t i) {
+        tables[i].fill(0);
+        const std::size_t begin = std::min(i * chunk_size, keys.size()), end = std::min(begin + chunk_size, keys.size());
+        for_primitives(geometry, begin, end, [&](std::size_t at, PrimitiveId id) {
             const Box4 box = bounds_of(geometry, id);
             keys[at] = {curve.code(_mm_add_ps(box.lo, box.hi)), id};
+            ++tables[i][digit_of(keys[at], 0)];
         });
     });
-    sort(keys, parallel_for);
-    refs.resize(keys.size());
-    std::vector<Cell> cells;
-    cut_cells(keys, {0, static_cast<std::uint32_t>(keys.size())}, kGatherSize, cells);
-    std::vector<BuildRefs> parts(cells.size());
-    parallel_for(cells.size(), [&](std::size_t i) { gather(geometry, keys, cells[i], refs, parts[i]); });
-    for (BuildRefs& part : parts) {
-        clusters.insert(clusters.end(), part.begin(), part.end());
-        part = BuildRefs();
+    CurveKeys other(keys.size());
+    for (int shift = 0; shift < 3 * kBitsPerAxis; shift += kDigitBits) {
+        if (shift > 0) {
+            parallel_for(chunks, [&](std::size_t i) {
+                tables[i].fill(0);
+                for (const CurveKey& k : chunk_of(keys, i)) ++tables[i][digit_of(k, shift)];
+            });
+        }
+        std::uint32_t sum = 0;
+        for (std::size_t d = 0; d < kDigits; ++d) {
+            for (Table& table : tables) sum += std::exchange(table[d], sum);
+        }
+        parallel_for(chunks, [&](std::size_t i) {
+            for (const CurveKey& k : chunk_of(keys, i)) other[tables[i][digit_of(k, shift)]++] = k;
+        });
+        keys.swap(other);
     }
+    return keys;
+}
+
+void cut_cells(std::span<const CurveKey> keys, CurveCell cell, std::size_t size, std::vector<CurveCell>& cells) {
+    const std::uint32_t differ = keys[cell.first].code ^ keys[cell.last - 1].code;
+    if (cell.count() <= size || differ == 0) return cells.push_back(cell);
+    const std::uint32_t bit = std::bit_floor(differ);
+    const auto begin = keys.begin() + cell.first, end = keys.begin() + cell.last;
+    const auto middle = static_cast<std::uint32_t>(
+        std::partition_point(begin, end, [bit](const CurveKey& k) { return (k.code & bit) == 0; }) - keys.begin());
+    cut_cells(keys, {cell.first, middle}, size, cells);
+    cut_cells(keys, {middle, cell.last}, size, cells);
 }
 
 }  // namespace glint

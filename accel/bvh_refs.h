@@ -43,12 +43,13 @@ inline Box4 bounds_of(const Geometry& geometry, PrimitiveId id) {
     return {load_vertex(box.lo), load_vertex(box.hi)};
 }
 
+// Put together in registers: four bytes stored into sixteen would hold up whoever loads them.
 inline BuildRef make_ref(const Box4& box, std::uint32_t id, float weight) {
+    const __m128 corner = _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0));
+    const __m128i id4 = _mm_cvtsi32_si128(static_cast<int>(id)), weight4 = _mm_castps_si128(_mm_set_ss(weight));
     BuildRef r;
-    _mm_store_ps(r.lo, box.lo);
-    _mm_store_ps(r.hi, box.hi);
-    r.id = id;
-    r.weight = weight;
+    _mm_store_ps(r.lo, _mm_or_ps(_mm_and_ps(box.lo, corner), _mm_castsi128_ps(_mm_slli_si128(id4, 12))));
+    _mm_store_ps(r.hi, _mm_or_ps(_mm_and_ps(box.hi, corner), _mm_castsi128_ps(_mm_slli_si128(weight4, 12))));
     return r;
 }
 

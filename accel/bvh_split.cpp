@@ -98,13 +98,12 @@ float leaf_cost(std::uint32_t count, bool small) {
     return count <= kBvhWidth ? 0.5f + 0.5f * n / kBvhWidth : static_cast<float>((count + kBvhWidth - 1) / kBvhWidth);
 }
 
-Split best_split(std::span<const BuildRef> refs, const BuildRange& range, std::uint32_t primitives,
-                 const ParallelFor& parallel_for) {
+Split best_split(std::span<const BuildRef> refs, const BuildRange& range, SplitOf what, const ParallelFor& parallel_for) {
     const Binning binning(range);
     const auto bins = static_cast<std::size_t>(binning.bins);
     const auto count = [&](std::span<const BuildRef> some, Bins& into) {
         into.clear(binning.bins);
-        primitives == range.count ? into.count<false>(some, binning) : into.count<true>(some, binning);
+        what == SplitOf::primitives ? into.count<false>(some, binning) : into.count<true>(some, binning);
     };
     Bins all;
     if (!in_chunks(range)) {
@@ -115,7 +114,7 @@ Split best_split(std::span<const BuildRef> refs, const BuildRange& range, std::u
         all.clear(binning.bins);
         for (const Bins& b : part) all.add(b, binning.bins);
     }
-    const bool small = primitives <= 16 * kBvhWidth;
+    const bool small = what == SplitOf::primitives && range.count <= 16 * kBvhWidth;
     alignas(16) float right_cost[kMaxBins][4];
     Side right, left;
     for (std::size_t i = bins - 1; i > 0; --i) {
@@ -144,28 +143,67 @@ Split best_split(std::span<const BuildRef> refs, const BuildRange& range, std::u
     return best;
 }
 
-Split best_sweep(std::span<const BuildRef> refs, std::uint32_t first, std::uint32_t count) {
-    static const std::array<float, kMaxSweep> kLeafCost = [] {
-        std::array<float, kMaxSweep> cost;
-        for (std::uint32_t i = 0; i < kMaxSweep; ++i) cost[i] = leaf_cost(i, true);
-        return cost;
-    }();
-    alignas(16) float right[kMaxSweep][8];  // the box of refs[i] to the last, and its cost where a lane is free
-    Box4 box;
-    const BuildRef* r = refs.data() + first;
-    for (std::uint32_t i = count - 1; i > 0; --i) {
-        box.grow(r[i].low(), r[i].high());
-        _mm_store_ps(right[i], box.lo), _mm_store_ps(right[i] + 4, box.hi);
-        right[i][3] = kLeafCost[count - i] * box.half_area();
+namespace {
+
+// Sizes of boxes that grow along a sweep, for four half areas at a time.
+struct SweepSizes {
+    alignas(16) std::array<std::array<float, 4>, kMaxSweep + 4> size;
+
+    void set(std::size_t i, __m128 d) { _mm_store_ps(size[i].data(), d); }
+    [[nodiscard]] __m128 half_areas(std::size_t i) const {
+        __m128 x = _mm_load_ps(size[i].data()), y = _mm_load_ps(size[i + 1].data()), z = _mm_load_ps(size[i + 2].data());
+        __m128 other = _mm_load_ps(size[i + 3].data());
+        _MM_TRANSPOSE4_PS(x, y, z, other);
+        return _mm_add_ps(_mm_add_ps(_mm_mul_ps(x, y), _mm_mul_ps(y, z)), _mm_mul_ps(z, x));
     }
-    Split best;
-    box = Box4();
-    for (std::uint32_t i = 1; i < count; ++i) {
-        box.grow(r[i - 1].low(), r[i - 1].high());
-        const float cost = kLeafCost[i] * box.half_area() + right[i][3];
-        if (cost < best.cost || best.axis < 0) best = {0, static_cast<int>(i), cost, box, {}};
+};
+
+// What n members cost, rising for the left side and falling for the right one; behind the last cut nothing is affordable.
+struct SweepCosts {
+    std::array<float, kMaxSweep + 4> rising, falling;
+
+    explicit SweepCosts(SweepOf what) {
+        const auto cost = [&](std::uint32_t n) { return what == SweepOf::leaves ? static_cast<float>(n) : leaf_cost(n, true); };
+        falling.fill(kInfinity);
+        for (std::uint32_t n = 0; n < kMaxSweep + 4; ++n) rising[n] = cost(n);
+        for (std::uint32_t n = 1; n <= kMaxSweep; ++n) falling[kMaxSweep - n] = cost(n);
     }
-    best.right = {_mm_load_ps(right[best.bin]), _mm_load_ps(right[best.bin] + 4)};
+};
+
+}  // namespace
+
+Split best_sweep(std::span<const BuildRef> refs, SweepOf what) {
+    static const SweepCosts kPrimitives(SweepOf::primitives), kLeaves(SweepOf::leaves);
+    const SweepCosts& costs = what == SweepOf::leaves ? kLeaves : kPrimitives;
+    const std::size_t cuts = refs.size() - 1;
+    SweepSizes left, right;  // [i]: of the first i + 1 members, and of the others
+    Box4 first, last;
+    for (std::size_t i = 0, k = cuts; k > 0; ++i, --k) {
+        first.grow(refs[i].low(), refs[i].high());
+        last.grow(refs[k].low(), refs[k].high());
+        left.set(i, _mm_sub_ps(first.hi, first.lo));
+        right.set(k - 1, _mm_sub_ps(last.hi, last.lo));
+    }
+    for (std::size_t i = 0; i < 3; ++i) left.set(cuts + i, _mm_setzero_ps()), right.set(cuts + i, _mm_setzero_ps());
+    __m128 best_cost = _mm_set1_ps(kInfinity), best_at = _mm_setzero_ps(), at = _mm_setr_ps(0.0f, 1.0f, 2.0f, 3.0f);
+    const float* falling = &costs.falling[kMaxSweep - cuts];
+    for (std::size_t i = 0; i < cuts; i += 4) {
+        const __m128 cost = _mm_add_ps(_mm_mul_ps(_mm_loadu_ps(&costs.rising[i + 1]), left.half_areas(i)),
+                                       _mm_mul_ps(_mm_loadu_ps(falling + i), right.half_areas(i)));
+        best_at = select(_mm_cmplt_ps(cost, best_cost), at, best_at);
+        best_cost = _mm_min_ps(cost, best_cost);
+        at = _mm_add_ps(at, _mm_set1_ps(4.0f));
+    }
+    alignas(16) std::array<float, 4> cost, index;
+    _mm_store_ps(cost.data(), best_cost), _mm_store_ps(index.data(), best_at);
+    std::size_t lane = 0;
+    for (std::size_t i = 1; i < 4; ++i) {
+        if (cost[i] < cost[lane] || (cost[i] == cost[lane] && cost[i] < kInfinity && index[i] < index[lane])) lane = i;
+    }
+    Split best{0, static_cast<int>(index[lane]) + 1, cost[lane], {}, {}};
+    const auto cut = static_cast<std::size_t>(best.bin);
+    for (const BuildRef& r : refs.first(cut)) best.left.grow(r.low(), r.high());
+    for (const BuildRef& r : refs.subspan(cut)) best.right.grow(r.low(), r.high());
     return best;
 }
 

@@ -38,7 +38,7 @@ struct alignas(16) BuildRef {
     float lo[3];
     PrimitiveId id;
     float hi[3];
-    float weight;  // primitives in it; a float, because the bits of a small integer are a subnormal one and slow
+    float weight;  // of a cluster, leaves in it; a float, because the bits of a small integer are a subnormal one and slow
 
     [[nodiscard]] __m128 low() const {
         // Without the id, whose bits are a subnormal float and slow.
@@ -89,12 +89,14 @@ struct Split {
 // Cost of `count` primitives in one leaf or, for more, in the leaves to come; a node visit is 1.
 [[nodiscard]] float leaf_cost(std::uint32_t count, bool small);
 
-// The cheapest cut between bins. `primitives`: how many there are; more than range.count where the references are clusters.
-[[nodiscard]] Split best_split(std::span<const BuildRef> refs, const BuildRange& range, std::uint32_t primitives,
+// The cheapest cut between bins. Clusters count their weights in leaves.
+enum class SplitOf { primitives, clusters };
+[[nodiscard]] Split best_split(std::span<const BuildRef> refs, const BuildRange& range, SplitOf what,
                                const ParallelFor& parallel_for);
-// The cheapest cut of at most kMaxSweep primitives in the order they lie in: axis is 0, bin the size of the left side.
-constexpr std::uint32_t kMaxSweep = 64;
-[[nodiscard]] Split best_sweep(std::span<const BuildRef> refs, std::uint32_t first, std::uint32_t count);
+// The cheapest cut of 2 to kMaxSweep primitives or leaves in the order they lie in: axis is 0, bin the size of the left side.
+constexpr std::uint32_t kMaxSweep = 160;
+enum class SweepOf { primitives, leaves };
+[[nodiscard]] Split best_sweep(std::span<const BuildRef> refs, SweepOf what);
 // Cuts `range` at `split`; the order within the sides is of no importance.
 void partition(std::span<BuildRef> refs, const BuildRange& range, const Split& split, const ParallelFor& parallel_for,
                BuildRange& left, BuildRange& right);

@@ -111,8 +111,10 @@ std::array<std::uint32_t, kBvhWidth> ranks(const std::array<float, kBvhWidth>& k
 std::size_t BvhPart::append_node() {
     const std::size_t unit = append<BvhNode>(units);
     ++nodes;
-    return unit;
+    return origin + unit;
 }
+
+void BvhPart::append_root() { append<BvhNode>(units); }
 
 BvhRef BvhPart::append_leaf(const Geometry& geometry, std::span<PrimitiveId> ids) {
     ++leaves;
@@ -130,7 +132,7 @@ BvhRef BvhPart::append_leaf(const Geometry& geometry, std::span<PrimitiveId> ids
         case PrimitiveKind::box: unit = append_block<BoxBlock>(units, all, geometry); break;
         default: unit = append_block<ConeBlock>(units, all, geometry); break;
     }
-    return kLeafBit | static_cast<BvhRef>(kind) << 29 | static_cast<BvhRef>(unit);
+    return kLeafBit | static_cast<BvhRef>(kind) << 29 | static_cast<BvhRef>(origin + unit);
 }
 
 void BvhPart::count_leaf_extent(const Box4& bounds) {
@@ -139,14 +141,15 @@ void BvhPart::count_leaf_extent(const Box4& bounds) {
     leaf_sides += static_cast<double>(std::max(side[0], std::max(side[1], side[2])));
 }
 
-void BvhPart::move_references(BvhRef by) {
+void BvhPart::move_references(BvhRef by, bool leaves_too) {
     std::vector<BvhRef> stack{0};
     while (!stack.empty()) {
         BvhNode& n = node(stack.back());
         stack.pop_back();
         for (std::size_t i = 0; i < kBvhWidth && n.bounds[0][i] <= n.bounds[1][i]; ++i) {
-            if ((n.child[i] & kLeafBit) == 0) stack.push_back(n.child[i]);
-            n.child[i] += by;
+            const bool leaf = (n.child[i] & kLeafBit) != 0;
+            if (!leaf) stack.push_back(n.child[i]);
+            if (!leaf || leaves_too) n.child[i] += by;
         }
     }
 }

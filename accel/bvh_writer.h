@@ -11,21 +11,24 @@
 
 namespace glint {
 
-// A piece of a tree; its references count from its own first unit.
+// A piece of a tree; its references count from `origin`, that of its first unit.
 struct BvhPart {
     BvhTree::Units units;
+    std::size_t origin = 0;
     std::size_t nodes = 0, leaves = 0;
     int depth = 0;
     double leaf_sides = 0.0;  // the leaves' widest sides, summed, for BvhTree::leaf_extent
 
-    BvhNode& node(std::size_t unit) { return *reinterpret_cast<BvhNode*>(units[unit].bytes); }
+    BvhNode& node(std::size_t unit) { return *reinterpret_cast<BvhNode*>(units[unit - origin].bytes); }
     // Throws std::length_error where references end.
     std::size_t append_node();
+    // Room for a node that is written later and counted then.
+    void append_root();
     // A leaf of 1 to kBvhWidth primitives of one kind, in any order.
     BvhRef append_leaf(const Geometry& geometry, std::span<PrimitiveId> ids);
     void count_leaf_extent(const Box4& bounds);
-    // Adds to the references of the nodes written, which then count from another first unit.
-    void move_references(BvhRef by);
+    // Adds to the references of the nodes written, which then count from another first unit; to those to leaves if told so.
+    void move_references(BvhRef by, bool leaves_too);
     void clear() { units.clear(), nodes = leaves = 0, depth = 0, leaf_sides = 0.0; }
 };
 

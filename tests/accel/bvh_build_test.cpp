@@ -78,13 +78,13 @@ std::vector<BuildRef> random_refs(std::size_t count) {
 
 float x(__m128 v) { return _mm_cvtss_f32(v); }
 
-// Large enough for chunks, whose members are exchanged afterwards.
-TEST(BvhSplit, PartitionInChunksKeepsEveryMemberOnItsSide) {
-    for (const std::uint32_t count : {2 * kChunk + 1, 5 * kChunk, 7 * kChunk + 77}) {
+// By way of a buffer, in place, and in chunks, whose members are exchanged afterwards.
+TEST(BvhSplit, PartitionKeepsEveryMemberOnItsSide) {
+    for (const std::uint32_t count : {9u, 700u, 5000u, 2 * kChunk + 1, 5 * kChunk, 7 * kChunk + 77}) {
         std::vector<BuildRef> refs = random_refs(count);
         const BuildRange all = measure(refs, contrary_for);
-        ASSERT_TRUE(in_chunks(all));
-        const Split split = best_split(refs, all, count, contrary_for);
+        ASSERT_EQ(in_chunks(all), count > 2 * kChunk);
+        const Split split = best_split(refs, all, SplitOf::primitives, contrary_for);
         ASSERT_GE(split.axis, 0);
         BuildRange left, right;
         partition(refs, all, split, contrary_for, left, right);
@@ -104,19 +104,24 @@ TEST(BvhSplit, PartitionInChunksKeepsEveryMemberOnItsSide) {
 
 TEST(BvhSplit, ASweepFindsTheCheapestCutOfTheOrder) {
     const std::vector<BuildRef> refs = random_refs(200);
-    for (const std::uint32_t count : {2u, 3u, 9u, 40u, kMaxSweep}) {
-        const Split split = best_sweep(refs, 100, count);
-        for (std::uint32_t i = 1; i < count; ++i) {
-            const BuildRange left = measure(refs, 100, i), right = measure(refs, 100 + i, count - i);
-            const float cost =
-                leaf_cost(i, true) * left.bounds.half_area() + leaf_cost(count - i, true) * right.bounds.half_area();
-            EXPECT_LE(split.cost, cost);
-            if (static_cast<int>(i) != split.bin) continue;
-            EXPECT_EQ(split.cost, cost);
-            EXPECT_EQ(split.left.half_area(), left.bounds.half_area());
-            EXPECT_EQ(split.right.half_area(), right.bounds.half_area());
+    for (const std::uint32_t count : {2u, 3u, 4u, 5u, 6u, 9u, 40u, kMaxSweep})
+        for (const SweepOf what : {SweepOf::primitives, SweepOf::leaves}) {
+            const Split split = best_sweep(std::span(refs).subspan(20, count), what);
+            const auto cost_of = [&](std::uint32_t n) {
+                return what == SweepOf::leaves ? static_cast<float>(n) : leaf_cost(n, true);
+            };
+            ASSERT_GE(split.bin, 1);
+            ASSERT_LT(split.bin, static_cast<int>(count));
+            for (std::uint32_t i = 1; i < count; ++i) {
+                const BuildRange left = measure(refs, 20, i), right = measure(refs, 20 + i, count - i);
+                const float cost = cost_of(i) * left.bounds.half_area() + cost_of(count - i) * right.bounds.half_area();
+                EXPECT_LE(split.cost, cost);
+                if (static_cast<int>(i) != split.bin) continue;
+                EXPECT_EQ(split.cost, cost);
+                EXPECT_EQ(split.left.half_area(), left.bounds.half_area());
+                EXPECT_EQ(split.right.half_area(), right.bounds.half_area());
+            }
         }
-    }
 }
 
 }  // namespace
