@@ -17,6 +17,7 @@
 #include "app/chart_page.h"
 #include "app/chart_scaling.h"
 #include "app/chart_subjects.h"
+#include "app/options.h"
 
 namespace glint {
 namespace {
@@ -229,8 +230,9 @@ int run_chart(const Options& o) {
         fmt::format("{} seeds a point, each one a timing; variants take turns seed by seed after a warm-up; seconds are medians "
                     "and hold the build of the accelerator. Sample counts are powers of {}.",
                     effort.seeds, effort.step),
-        fmt::format("Measured in {:.0f} s. Threads are not pinned; bands and medians hold what else the machine did.",
-                    meter.elapsed())};
+        fmt::format("Measured in {:.0f} s. {}; bands and medians hold what else the machine did.", meter.elapsed(),
+                    threads <= available_threads() ? "Each thread keeps to a processor of its own"
+                                                   : "Threads are more than processors and not pinned")};
     if (stopped) c.notes.push_back("The run was stopped: what had been measured by then is shown.");
     for (Section* section : {&s.samplers, &s.error_bars, &s.accelerators, &s.features, &s.settings, &s.scaling, &s.references}) {
         const bool rows = std::ranges::any_of(section->tables, [](const Table& t) { return !t.rows.empty(); });

@@ -11,6 +11,7 @@
 
 #include "app/chart_reference.h"
 #include "app/chart_statistics.h"
+#include "app/options.h"
 #include "core/threads.h"
 
 namespace glint::chart {
@@ -75,7 +76,7 @@ Bench::Bench(const Subject& subject, int threads, const std::atomic<bool>& stop)
       automatic_(automatic_accelerator(*subject.scene, expected_rays(*subject.scene, subject.width, subject.height,
                                                                      static_cast<double>(subject.most_spp), threads))),
       accelerators_(subject.scene, threads),
-      renderer_(threads, false) {}
+      renderer_(threads, false, threads <= available_threads()) {}
 
 Shot Bench::take(const RenderSettings& settings, int spp, AcceleratorChoice accelerator, int crop_rows) {
     Frame frame;

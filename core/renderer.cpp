@@ -6,14 +6,18 @@
 #include <utility>
 
 #include "core/renderer_state.h"
+#include "core/threads.h"
 
 namespace glint {
 
-Renderer::Renderer(int threads, bool preview) : state_(std::make_unique<State>(preview)) {
+Renderer::Renderer(int threads, bool preview, bool pinned) : state_(std::make_unique<State>(preview)) {
     workers_.reserve(static_cast<std::size_t>(std::max(1, threads)));
     for (int i = 0; i < std::max(1, threads); ++i) {
         try {
-            workers_.emplace_back([this] { state_->run_worker(); });
+            workers_.emplace_back([this, pinned, i] {
+                if (pinned) pin_to_processor(i);
+                state_->run_worker();
+            });
         } catch (const std::exception&) {
             // Fewer workers give the same picture.
             if (workers_.empty()) throw std::runtime_error("no thread can be started");

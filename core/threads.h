@@ -23,4 +23,8 @@ public:
 // machine whose cores are all rendering.
 void lower_priority();
 
+// Keeps the calling thread on the index-th of the processors it may use, counted round: measurements should not wander. False
+// where the system refuses.
+bool pin_to_processor(int index);
+
 }  // namespace glint

@@ -2,6 +2,7 @@
 #include "core/threads.h"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <atomic>
 #include <mutex>
@@ -68,6 +69,25 @@ TEST(ParallelForOn, AStopEndsTheLoopAtTheNextTask) {
         EXPECT_LT(calls, 10 + 2 * std::max(1, threads));
         EXPECT_THROW(loop(1, task), Abandoned);
     }
+}
+
+TEST(Threads, APinnedOneKeepsToOneProcessorOfThoseItMayUse) {
+    cpu_set_t all;
+    ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
+    std::set<int> used;
+    for (int i = 0; i < CPU_COUNT(&all) + 1; ++i) {
+        std::jthread([&] {
+            ASSERT_TRUE(pin_to_processor(i));
+            cpu_set_t mine;
+            ASSERT_EQ(sched_getaffinity(0, sizeof mine, &mine), 0);
+            EXPECT_EQ(CPU_COUNT(&mine), 1);
+            for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+                if (CPU_ISSET(static_cast<std::size_t>(cpu), &mine)) used.insert(cpu);
+            }
+        }).join();
+    }
+    EXPECT_EQ(static_cast<int>(used.size()), CPU_COUNT(&all));
+    for (const int cpu : used) EXPECT_TRUE(CPU_ISSET(static_cast<std::size_t>(cpu), &all));
 }
 
 }  // namespace
