@@ -9,9 +9,9 @@
 namespace glint {
 namespace {
 
-constexpr double kNinetyFive = 1.96, kCautious = 3.0;
-// Rare events have to show in the picture as a whole and, so that edges have been seen from both sides, in each pixel.
-constexpr int kLeastSamples = 32;
+constexpr double kNinetyFive = 1.96, kCautious = 2.0;
+// Rare events have to show in the picture as a whole, and three doublings have to tell how it converges.
+constexpr int kLeastSamples = 8;
 constexpr std::size_t kLeastPictureSamples = std::size_t{1} << 16;
 
 // By what the next doublings' changes shrink, as the logarithm of the ratio of two in a row: at a slope of 0.5 (random, and no
@@ -20,6 +20,18 @@ constexpr std::size_t kLeastPictureSamples = std::size_t{1} << 16;
 const double kLogSlowest = std::log(0.5), kLogFastest = std::log(0.125);
 const double kLogUsual = std::log(0.4);
 constexpr double kUsualSpread = 0.2;
+// Where several pairs of dimensions are drawn apart (`sobol`), or more of them together than a net is good for (`joint`), what
+// hangs on more than one falls as 1/N, and soon that is all there is. What hangs on one alone falls about as 1/N^1.9, between
+// edges and smooth integrands.
+constexpr double kFast = 0.27;          // that part's ratio
+constexpr double kFirstSlow = 0.25;     // usual share of the 1/N part in the first change
+constexpr double kMostUsualSlow = 0.6;  // and the largest that counts as usual later
+constexpr double kUsualSlowSpread = 0.3;
+constexpr double kModelError = 0.15;  // of a change, relative
+// What the two powers leave out. In `joint` errors fall in steps, where samples fill the strata of four or six dimensions.
+constexpr double kSobolSteps = 0.12, kJointSteps = 0.4;
+constexpr std::size_t kPaddedWindow = 4;
+
 // The ratio drifts: as samples grow, the parts of a picture that converge slowly make up more of what is left.
 constexpr double kDrift = 0.07;
 // While a picture is noisy, changes are weighed by noisy means: E 1/I^2 is (1 + 3 v) / truth^2 for a relative variance v, and v
@@ -37,16 +49,16 @@ struct Level {
     double spread = 0.0;             // standard deviation of log(mse)
     double least = 1.0, most = 1.0;  // limits that hold beside the spread, as factors of mse
     double ratio = 0.5;              // of the next doubling's change to the last one's
+    double slow = 0.0, slope = 0.5;  // see ErrorEstimate
 };
 
 // The last changes, newest first, as means over pixels, and their relative variances. Pixels are independent, so the variance
 // of their sum is at most the sum of squares.
 struct Window {
-    std::array<double, kWindow> change{}, variance{};
+    std::array<double, std::max(kWindow, kPaddedWindow)> change{}, variance{};
     std::size_t size = 0;
 
-    Window(std::span<const Doubling> doublings, std::size_t limit, double pixels)
-        : size(std::min({kWindow, limit, doublings.size()})) {
+    Window(std::span<const Doubling> doublings, std::size_t limit, double pixels) : size(std::min(limit, doublings.size())) {
         for (std::size_t i = 0; i < size; ++i) {
             const Doubling& d = doublings[doublings.size() - 1 - i];
             change[i] = d.change / pixels;
@@ -68,6 +80,7 @@ Level extrapolate(const Window& w, double ratio, double told, double unsure) {
     }
     Level out;
     out.ratio = ratio;
+    out.slope = -0.5 * std::log2(ratio);
     out.mse = level * ratio / (1.0 - ratio);
     if (!(level > 0.0)) return out;
     // Of log(mse) by log(ratio), then by each change (delta method).
@@ -85,8 +98,15 @@ Level extrapolate(const Window& w, double ratio, double told, double unsure) {
     return out;
 }
 
-// Independent samples, or blocks of them: the error falls as N^-1/2, for certain.
-Level independent(const Window& w) { return extrapolate(w, 0.5, 0.0, 0.0); }
+// What few samples cannot have seen yet, such as sparks, widens the interval: so much for one of them, as log(mse).
+constexpr double kUnseen = 0.8;
+
+// `units` independent samples, or blocks of them: the error falls as N^-1/2, for certain.
+Level independent(const Window& w, double units) {
+    Level out = extrapolate(w, 0.5, 0.0, 0.0);
+    out.spread = std::hypot(out.spread, kUnseen / std::sqrt(units));
+    return out;
+}
 
 // The ratio is what the changes say, weighed against what is usual by how well they say it.
 Level scrambled(const Window& w) {
@@ -108,12 +128,49 @@ Level scrambled(const Window& w) {
     return extrapolate(w, ratio, told, std::hypot((1.0 - told) * kUsualSpread, kDrift));
 }
 
+// Two powers of the samples, fitted to the changes and to the usual shares, each weighed by what is unsure about it.
+Level padded(const Window& w, std::size_t known, double steps) {
+    double usual = std::ldexp(kFirstSlow / (1.0 - kFirstSlow), static_cast<int>(known) - 1);
+    usual = std::min(kMostUsualSlow, usual / (1.0 + usual));
+    Level out = extrapolate(w, 0.5, 0.0, 0.0);  // of the right size
+    if (!(out.mse > 0.0)) return out;
+    const double unit = out.mse;
+    // Normal equations for the two parts of the newest change, in that unit.
+    const double by_slow = (1.0 - usual) / kUsualSlowSpread, by_fast = -usual / kUsualSlowSpread;
+    double ss = by_slow * by_slow, sf = by_slow * by_fast, ff = by_fast * by_fast, s = 0.0, f = 0.0;
+    double slower = 1.0, faster = 1.0;
+    for (std::size_t i = 0; i < w.size; ++i, slower /= 0.5, faster /= kFast) {
+        const double change = w.change[i] / unit, unsure = kModelError * std::max(change, 0.5 * slower);
+        const double weight = 1.0 / (unsure * unsure + w.variance[i] / (unit * unit));
+        ss += weight * slower * slower;
+        sf += weight * slower * faster;
+        ff += weight * faster * faster;
+        s += weight * slower * change;
+        f += weight * faster * change;
+    }
+    const double determinant = ss * ff - sf * sf;
+    double slow = (ff * s - sf * f) / determinant, fast = (ss * f - sf * s) / determinant;
+    if (slow < 0.0) slow = 0.0, fast = f / ff;
+    if (fast < 0.0) fast = 0.0, slow = s / ss;
+    constexpr double kFastRest = kFast / (1.0 - kFast);  // all later changes over the newest
+    const double mse = slow + kFastRest * fast;
+    double variance = (ff - 2.0 * kFastRest * sf + kFastRest * kFastRest * ss) / (determinant * mse * mse);
+    variance += steps * steps + kUnseen * kUnseen * std::ldexp(1.0, -static_cast<int>(known));
+    if (w.change[0] > 0.0) variance += w.variance[0] / (w.change[0] * w.change[0]);
+    out.mse = unit * mse;
+    out.slow = slow / mse;
+    out.slope = 0.5 * out.slow - 0.5 * std::log2(kFast) * (1.0 - out.slow);
+    out.ratio = 0.5 * out.slow + kFast * (1.0 - out.slow);
+    out.spread = std::hypot(std::sqrt(variance), std::min(1.0, kNoisyWeights * out.mse));
+    return out;
+}
+
 // Up to a whole block of strata a pixel has drawn cells without replacement (Cochran 1977, section 2.6): with S = what random
 // samples would have, its error lies between S (1/N - 1/64), all of it between cells, and S/N, all of it within them. Mostly it
 // is between them, by how much no sample tells: the interval has both ends.
 Level within_a_block(const Window& w, double samples) {
     constexpr double kBlock = kStrata * kStrata, kUsuallyBetween = 0.75;
-    Level out = independent(w);
+    Level out = independent(w, samples);
     const double left = 1.0 - samples / kBlock;
     const double middle = 1.0 - kUsuallyBetween * samples / kBlock;
     out.mse *= middle;
@@ -122,22 +179,26 @@ Level within_a_block(const Window& w, double samples) {
     return out;
 }
 
-Level level_at(std::span<const Doubling> doublings, double pixels, SamplerKind sampler) {
+Level level_at(std::span<const Doubling> doublings, double pixels, Randomness random) {
     constexpr std::size_t kInBlock = std::bit_width(kStrata * kStrata) - 1;
     const std::size_t n = doublings.size();
-    switch (sampler) {
-        case SamplerKind::random: return independent({doublings, n, pixels});
+    const double samples = std::ldexp(1.0, static_cast<int>(n));
+    switch (random.sampler) {
+        case SamplerKind::random: return independent({doublings, kWindow, pixels}, samples);
         case SamplerKind::jittered:
-            if (n > kInBlock) return independent({doublings, n - kInBlock, pixels});
-            return within_a_block({doublings, n, pixels}, std::ldexp(1.0, static_cast<int>(n)));
-        default: return scrambled({doublings, n, pixels});
+            if (n <= kInBlock) return within_a_block({doublings, kWindow, pixels}, samples);
+            return independent({doublings, std::min(kWindow, n - kInBlock), pixels}, samples / (kStrata * kStrata));
+        default: break;
     }
+    if (!random.one_square)
+        return padded({doublings, kPaddedWindow, pixels}, n, random.sampler == SamplerKind::joint ? kJointSteps : kSobolSteps);
+    return scrambled({doublings, kWindow, pixels});
 }
 
 // What no net exceeds by much, and tells better in small pictures, whose changes tell a ratio badly.
 Level ceiling_at(std::span<const Doubling> doublings, double pixels, SamplerKind sampler, const Level& level) {
     const bool net = sampler != SamplerKind::random && sampler != SamplerKind::jittered;
-    return net ? independent({doublings, doublings.size(), pixels}) : level;
+    return net ? independent({doublings, kWindow, pixels}, std::ldexp(1.0, static_cast<int>(doublings.size()))) : level;
 }
 
 // Between powers of two a sequence may be worse than at the last one. N samples are blocks of powers of two; a block of n and any
@@ -164,22 +225,25 @@ double between_doublings(std::span<const Doubling> doublings, double pixels, con
 
 }  // namespace
 
-ErrorEstimate estimate_error(std::span<const Doubling> doublings, std::size_t pixels, int spp, SamplerKind sampler) {
+ErrorEstimate estimate_error(std::span<const Doubling> doublings, std::size_t pixels, int spp, Randomness random) {
     ErrorEstimate e;
     e.spp = spp;
     const std::size_t known = std::min({doublings.size(), doublings_within(spp), kDoublings - 1});
     // The lattice is the same in every pixel and with every seed; what it misses, no sample shows.
-    if (sampler == SamplerKind::regular || known == 0 || pixels == 0) return e;
+    if (random.sampler == SamplerKind::regular || known == 0 || pixels == 0) return e;
     doublings = doublings.first(known);
     const auto count = static_cast<double>(pixels);
-    const Level level = level_at(doublings, count, sampler);
+    const Level level = level_at(doublings, count, random);
     e.kind = ErrorEstimate::Kind::estimated;
-    e.slope = -0.5 * std::log2(level.ratio);
+    e.slope = level.slope;
+    e.slow = level.slow;
     if (!(level.mse > 0.0)) return e;
     const bool doubled = std::has_single_bit(static_cast<std::uint32_t>(spp));
     const double here = doubled ? 1.0 : between_doublings(doublings, count, level, spp);
-    const Level ceiling = ceiling_at(doublings, count, sampler, level);
-    const auto upper = [&](double z) { return std::sqrt(here * std::min(level.upper(z), ceiling.upper(z))); };
+    const Level ceiling = ceiling_at(doublings, count, random.sampler, level);
+    const auto upper = [&](double z) {
+        return std::sqrt(here * std::max(level.mse, std::min(level.upper(z), ceiling.upper(z))));
+    };
     e.relrmse = std::sqrt(here * level.mse);
     e.low = std::sqrt(here * level.mse * level.least * std::exp(-kNinetyFive * level.spread));
     e.high = upper(kNinetyFive);
@@ -198,9 +262,20 @@ bool error_reached(const ErrorEstimate& e, std::size_t pixels, double target) {
            e.spp >= least_samples(pixels) && e.cautious <= target;
 }
 
+double times_until(const ErrorEstimate& e, double part) {
+    const double rest = e.slow < 1.0 ? (2.0 * e.slope - e.slow) / (1.0 - e.slow) : 1.0;
+    double low = -64.0, high = 64.0;  // log2 of the times
+    for (int i = 0; i < 64; ++i) {
+        const double middle = 0.5 * (low + high);
+        const double mse = e.slow * std::exp2(-middle) + (1.0 - e.slow) * std::exp2(-rest * middle);
+        (mse > part * part ? low : high) = middle;
+    }
+    return std::exp2(high);
+}
+
 int predicted_samples(const ErrorEstimate& e, std::size_t pixels, double target) {
     if (e.kind != ErrorEstimate::Kind::estimated || !(target > 0.0)) return e.kind == ErrorEstimate::Kind::exact ? e.spp : 0;
-    const double times = std::max(1.0, std::pow(e.cautious / target, 1.0 / e.slope));
+    const double times = e.cautious > target ? times_until(e, target / e.cautious) : 1.0;
     const double wanted = std::max(times * e.spp, static_cast<double>(least_samples(pixels)));
     if (!(wanted <= 0x1p30)) return 0;
     return static_cast<int>(std::bit_ceil(static_cast<std::uint32_t>(std::ceil(wanted))));

@@ -62,13 +62,22 @@ struct ErrorEstimate {
     int spp = 0;                   // samples a pixel that it is for
     double relrmse = 0.0;          // most likely
     double low = 0.0, high = 0.0;  // 95 % interval
-    double cautious = 0.0;         // upper end at z = 3, what stopping goes by
-    double slope = 0.5;            // relrmse falls as spp^-slope from here on
+    double cautious = 0.0;         // upper end at z = 2, what stopping goes by
+    double slope = 0.5;            // relrmse falls as spp^-slope here,
+    double slow = 0.0;             // but this share of its square goes on as 1/spp, so that the slope falls
 };
 
-// For a picture of `pixels` pixels whose samplers were of that kind, each with `spp` samples; doublings: sums over all of
-// them, at least doublings_within(spp).
-[[nodiscard]] ErrorEstimate estimate_error(std::span<const Doubling> doublings, std::size_t pixels, int spp, SamplerKind sampler);
+// What is random in a picture.
+struct Randomness {
+    SamplerKind sampler = SamplerKind::sobol;
+    bool one_square = true;  // one point of the unit square a sample; not several, for lens, lights, mirrors
+};
+
+// For a picture of `pixels` pixels, each with `spp` samples; doublings: sums over all of them, at least doublings_within(spp).
+[[nodiscard]] ErrorEstimate estimate_error(std::span<const Doubling> doublings, std::size_t pixels, int spp, Randomness random);
+
+// By how many times the samples have to grow until the error is `part` of what it is.
+[[nodiscard]] double times_until(const ErrorEstimate& estimate, double part);
 
 // Nothing stops before so many samples a pixel, a power of two: what is rare has to have had its chance to show (Kirk & Arvo
 // 1991), and two halves that both missed it agree.

@@ -37,9 +37,10 @@ struct RenderPlan {
     }
     [[nodiscard]] bool has(unsigned part) const { return (kernel & part) != 0; }
     // Whether two samples of a pixel can differ. If not, one says it all.
-    [[nodiscard]] bool stochastic() const {
-        return jitter || camera.lens_radius > 0.0f || has(kernel_part::soft) || has(kernel_part::fuzzy) || one_branch;
-    }
+    [[nodiscard]] bool stochastic() const { return jitter || camera.lens_radius > 0.0f || random_beyond_camera(); }
+    // Whether all that is random in a sample is one point of the unit square.
+    [[nodiscard]] bool one_square() const { return !(jitter && camera.lens_radius > 0.0f) && !random_beyond_camera(); }
+    [[nodiscard]] bool random_beyond_camera() const { return has(kernel_part::soft) || has(kernel_part::fuzzy) || one_branch; }
 };
 
 // Features that are turned on where the scene has no data of its own take scale-free defaults from the scene's first

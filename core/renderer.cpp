@@ -139,7 +139,7 @@ ErrorEstimate Renderer::error() const {
     const Doublings doublings = s.framebuffer->doublings(order->generation, samples);
     const std::size_t pixels = s.framebuffer->area().pixels();
     lock.unlock();
-    return estimate_error(doublings, pixels, samples, order->plan.sampler);
+    return estimate_error(doublings, pixels, samples, {order->plan.sampler, order->plan.one_square()});
 }
 
 bool Renderer::resolve(Image& image) const {

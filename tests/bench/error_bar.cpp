@@ -109,7 +109,7 @@ void print_row(const std::string& scene, const std::string& sampler, const std::
     for (const Run& r : runs) {
         const double target = expected[columns - 1] * 1.0001;
         const double spp =
-            std::exp2(static_cast<double>(from)) * std::pow(r.estimate[from].relrmse / target, 1.0 / r.estimate[from].slope);
+            std::exp2(static_cast<double>(from)) * times_until(r.estimate[from], target / r.estimate[from].relrmse);
         predicted.push_back(spp / samples_reaching(expected, target));
     }
     // Within its first block of strata jittered knows only bounds.
