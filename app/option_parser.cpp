@@ -134,7 +134,7 @@ public:
         text("--time", "S", "seconds to render at most",
              [this](auto n, auto v) { o_.time = number(n, v, 0.0, 1e9, "a number of seconds"); });
         text("--noise", "X",
-             "stop when the relative error (relRMSE) is X; looked at whenever the samples have doubled, from 32 on",
+             "stop when the relative error (relRMSE) is X; looked at whenever the samples have doubled, from 8 on",
              [this](auto n, auto v) { o_.noise = number(n, v, 1e-9, 1e9, "a relative error above 0"); });
         text("--convergence", "FILE.csv",
              "a row per doubling of the samples: seconds, rays, error estimate, error of --reference",
