@@ -143,30 +143,42 @@ inline float intersect_box(const PreparedRay& ray, const Box& box, float t_limit
 
 // Lateral surface of a truncated cone, in double, from the ray's point nearest to the base, so that distance does not cancel.
 inline float intersect_cone(const PreparedRay& ray, const Cone& cone, float t_limit) noexcept {
-    const glm::dvec3 d(ray.direction), base(cone.base);
+    const glm::dvec3 d(ray.direction), base(cone.base), from = glm::dvec3(ray.origin) - base;
     const glm::dvec3 axis = glm::dvec3(cone.apex) - base;
     const double h2 = glm::dot(axis, axis);
-    const double shift = glm::dot(base - glm::dvec3(ray.origin), d) / glm::dot(d, d);
-    const glm::dvec3 f = (glm::dvec3(ray.origin) - base) + shift * d;
-    // Height along the axis (0 base, 1 apex) and radius there are linear in t.
+    const double shift = -glm::dot(from, d) / glm::dot(d, d);
+    const glm::dvec3 f = from + shift * d;
+    // Height along the axis (0 base, 1 apex) and radius there are linear in t, and so is what lies across the axis.
     const double s0 = glm::dot(f, axis) / h2, s1 = glm::dot(d, axis) / h2;
     const double slope = static_cast<double>(cone.apex_radius) - static_cast<double>(cone.base_radius);
-    const double r0 = cone.base_radius + slope * s0, r1 = slope * s1;
-    const glm::dvec3 p0 = f - s0 * axis, p1 = d - s1 * axis;
+    double r0 = cone.base_radius + slope * s0, r1 = slope * s1;
+    glm::dvec3 p0 = f - s0 * axis, p1 = d - s1 * axis;
+    // Through a flat cone the radius runs much faster than the ray; the height is the unknown then, or all digits would cancel.
+    const bool by_height = slope * slope > 0x1p16 * h2 && r1 * r1 > 0x1p8 * glm::dot(p1, p1);
+    if (by_height) {
+        p0 -= (s0 / s1) * p1, p1 /= s1;
+        r0 = cone.base_radius, r1 = slope;
+    }
     const double a = glm::dot(p1, p1) - r1 * r1;
     const double b = -(glm::dot(p0, p1) - r0 * r1);
     const double c = glm::dot(p0, p0) - r0 * r0;
     const double discriminant = b * b - a * c;
     if (!(discriminant >= 0.0)) return 0.0f;
     const double q = b + std::copysign(std::sqrt(discriminant), b);
-    double roots[2] = {c / q, q / a};  // a = 0 (parallel to the surface) leaves one finite root
-    if (!(roots[0] <= roots[1])) std::swap(roots[0], roots[1]);
-    for (const double root : roots) {
-        const double height = s0 + s1 * root;
-        const double t_exact = root + shift;
-        if (!std::isfinite(t_exact)) continue;
-        const float t = static_cast<float>(t_exact);
-        const bool on_cone = height >= 0.0 && height <= 1.0 && r0 + r1 * root >= 0.0;
+    const double root[2] = {c / q, q / a};  // a = 0 (parallel to the surface) leaves one finite root
+    const double along[2] = {(by_height ? (root[0] - s0) / s1 : root[0]) + shift,
+                             (by_height ? (root[1] - s0) / s1 : root[1]) + shift};
+    // What rounding has put beside the surface by a good part of the bounds' padding is no hit: no box would hold it.
+    const glm::dvec3 reach = glm::abs(from);
+    const auto radius = static_cast<double>(std::max(cone.base_radius, cone.apex_radius));
+    const double slack = 0x1p-21 * (std::max(reach.x, std::max(reach.y, reach.z)) + radius);
+    const int first = along[0] <= along[1] ? 0 : 1;
+    for (const int k : {first, 1 - first}) {
+        if (!std::isfinite(along[k])) continue;
+        const auto t = static_cast<float>(along[k]);
+        const double height = by_height ? root[k] : s0 + s1 * root[k], r = r0 + r1 * root[k];
+        const glm::dvec3 across = p0 + root[k] * p1;
+        const bool on_cone = height >= 0.0 && height <= 1.0 && r >= 0.0 && glm::dot(across, across) <= (r + slack) * (r + slack);
         if (on_cone && reportable(t, t_limit)) return t;
     }
     return 0.0f;

@@ -105,6 +105,20 @@ inline Geometry flat(int axis) {
 inline Geometry flat_floor() { return flat(2); }
 inline Geometry flat_wall() { return flat(0); }
 
+// Cones from slim to so flat that their height is lost beside their radius.
+inline Geometry flat_cones() {
+    Geometry g;
+    Random random(19);
+    for (int i = 0; i < 400; ++i) {
+        const glm::vec3 base = random.in_cube(-2.0f, 2.0f), axis = random.power_of_ten(-25.0f, 0.0f) * random.direction();
+        const float radius = random.uniform(0.1f, 0.6f);
+        const Cone cone{i % 3 == 0 ? glm::vec3(0.0f) : base, radius, i % 3 == 0 ? axis : base + axis,
+                        radius * random.uniform(0.0f, 1.0f)};
+        if (valid(cone)) g.cones.push_back(cone);
+    }
+    return g;
+}
+
 inline Geometry concentric_spheres() {
     Geometry g;
     for (int i = 1; i <= 3000; ++i)
@@ -205,6 +219,7 @@ inline constexpr AdversarialScene kAdversarialScenes[] = {
     {"stadium", scenes::stadium, 3000},
     {"flat_floor", scenes::flat_floor, 6000},
     {"flat_wall", scenes::flat_wall, 6000},
+    {"flat_cones", scenes::flat_cones, 6000},
     {"concentric_spheres", scenes::concentric_spheres, 3000},
     {"duplicates", scenes::duplicates, 6000},
     {"powers_of_two", scenes::powers_of_two, 8000},

@@ -196,5 +196,33 @@ TEST(Cone, S_CON_06_ScalesByPowersOfTwo) {
     }
 }
 
+// Down to heights of 10^-30 radii: a ring, met between its rims and nowhere else.
+TEST(Cone, S_CON_07_AFlatConeIsARing) {
+    Random random(7);
+    int found = 0;
+    for (int i = 0; i < 200000; ++i) {
+        const glm::vec3 axis = random.power_of_ten(-30.0f, -3.0f) * random.direction();
+        const float outer = random.uniform(0.5f, 1.0f), inner = outer * random.uniform(0.0f, 0.8f);
+        const glm::vec3 base(0.0f);
+        const Cone cone = i % 2 == 0 ? Cone{base, outer, axis, inner} : Cone{base, inner, axis, outer};
+        const glm::dvec3 n = glm::normalize(glm::dvec3(axis)), x = glm::normalize(glm::cross(n, glm::dvec3(random.direction())));
+        const double off = random.uniform(0.0f, 1.2f) * outer;
+        const glm::vec3 d = random.direction(), target(off * x);
+        const double slant = std::abs(glm::dot(n, glm::dvec3(d)) / glm::length(glm::dvec3(d)));
+        if (slant < 0.1) continue;
+        const Ray ray{target - 3.0f * d, d};
+        const float t = t_of(ray, cone);
+        found += t > 0.0f ? 1 : 0;
+        const double margin = 3e-6 + 2.0 * static_cast<double>(glm::length(axis)) / slant;
+        if (off < inner - margin || off > outer + margin) {
+            ASSERT_EQ(t, 0.0f) << text(ray) << text(axis) << off;
+        }
+        if (off > inner + margin && off < outer - margin) {
+            ASSERT_NEAR(t, 3.0, margin) << text(ray) << text(axis) << off;
+        }
+    }
+    EXPECT_GT(found, 50000);
+}
+
 }  // namespace
 }  // namespace glint
