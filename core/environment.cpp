@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <stb/stb_image.h>
 
+#include "core/picture_size.h"
 #include "core/scene.h"
 
 namespace glint {
@@ -104,13 +105,21 @@ CubeFace read_face(const fs::path& path) {
     int channels = 0;
     const auto reason = [] {
         const char* text = stbi_failure_reason();
-        return fmt::format("cannot read the picture: {}", text != nullptr ? text : "unknown error");
+        std::string line = text != nullptr ? text : "unknown error";
+        // stb quotes the file's bytes where it does not know a chunk.
+        std::replace_if(
+            line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+        return "cannot read the picture: " + line;
     };
     // The header is asked first: decoding allocates what it claims.
     if (stbi_info(file.c_str(), &width, &height, &channels) == 0) refuse(path, reason());
     const bool usable = width > 0 && height > 0 && width <= kLargestSide && height <= kLargestSide;
     if (!usable || std::int64_t{width} * height > kMostPixels) {
         refuse(path, fmt::format("{} x {} pixels are too many: at most {} a side, 2^26 in all", width, height, kLargestSide));
+    }
+    std::error_code unknown;
+    if (!can_hold(fs::file_size(path, unknown), width, height)) {
+        refuse(path, fmt::format("the file is too short for {} x {} pixels", width, height));
     }
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(stbi_load(file.c_str(), &width, &height, &channels, 3),
                                                                       &stbi_image_free);

@@ -257,6 +257,8 @@ TEST(Environment, AMissingBrokenOrHugePictureIsNamed) {
     // Claimed, not there: refused by the header, before anything of that size is allocated.
     folder.write("sky/bottom.png", "P6 16000 16000 255\n");
     EXPECT_NE(cube_refusal(sky).find("bottom.png: 16000 x 16000 pixels are too many"), std::string::npos);
+    folder.write("sky/bottom.png", "P6 8000 8000 255\n");
+    EXPECT_NE(cube_refusal(sky).find("bottom.png: the file is too short for 8000 x 8000 pixels"), std::string::npos);
     std::filesystem::remove(sky / "bottom.png");
     std::filesystem::create_directory(sky / "bottom.png");
     EXPECT_NE(cube_refusal(sky).find("missing"), std::string::npos);

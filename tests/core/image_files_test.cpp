@@ -220,6 +220,8 @@ TEST_F(DamagedFile, ClaimsAreNotBelieved) {
         const std::string height = size.substr(0, size.find(' ')), width = size.substr(size.find(' ') + 1);
         expect_refused("#?RADIANCE\n\n-Y " + height + " +X " + width + "\n" + std::string(300, '\2'));
     }
+    // 16000 x 16000 RGB, by its header alone.
+    expect_refused(std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x3e\x80\0\0\x3e\x80\x08\2\0\0\0", 29) + std::string(300, 'x'));
     constexpr std::int32_t kBillion = 1000000000, kLeast = std::numeric_limits<std::int32_t>::min(), kMost = ~kLeast;
     for (const std::array<std::int32_t, 4> window : {std::array{0, 0, kBillion, kBillion},
                                                      {0, 0, 16383, 16383},
