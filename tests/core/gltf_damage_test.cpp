@@ -1,36 +1,12 @@
 // Random damage to a glTF file that uses all that the reader follows: loaded or refused, never worse.
 #include <random>
 
-#include "gltf_fixture.h"
+#include "rich_files.h"
 
 namespace glint::test {
 namespace {
 
 using GltfDamage = GltfTest;
-
-// Everything that the reader follows, in one small file.
-json rich(const json& triangle) {
-    json d = triangle;
-    d["buffers"][0].erase("uri");
-    d["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}},
-                    {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0.1}, {"zfar", 9}}}}};
-    d["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 5}},
-                                                        {{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}}};
-    d["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_ior"};
-    d["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", {1, 0.5, 0, 1}}, {"metallicFactor", 0.5}}},
-                       {"emissiveFactor", {0, 0, 1}},
-                       {"extensions", {{"KHR_materials_ior", {{"ior", 1.33}}}}}}};
-    d["meshes"][0]["primitives"][0]["material"] = 0;
-    d["nodes"] = {{{"children", {1, 2, 3}}, {"scale", {-1, 2, 1}}},
-                  {{"mesh", 0}, {"rotation", {0, 0.6, 0, 0.8}}, {"camera", 0}},
-                  {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1}}, {"camera", 1}},
-                  {{"translation", {0, 3, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}}};
-    d["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 36}, {"byteLength", 8}});
-    d["accessors"][0]["sparse"] = {{"count", 1},
-                                   {"indices", {{"bufferView", 2}, {"byteOffset", 4}, {"componentType", 5123}}},
-                                   {"values", {{"bufferView", 0}, {"byteOffset", 24}}}};
-    return d;
-}
 
 // Loaded or refused; any other exception, a crash or a sanitizer's complaint fails the test.
 void load_or_refuse(const std::filesystem::path& path) {
@@ -45,7 +21,7 @@ void load_or_refuse(const std::filesystem::path& path) {
 
 TEST_F(GltfDamage, RandomBytesNeverCrash) {
     const std::string data = bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytes_of<std::uint16_t>({0, 1, 2, 0});
-    const std::string whole = glb(rich(triangle()), data);
+    const std::string whole = glb(rich_document(triangle()), data);
     ASSERT_EQ(read(write("a.glb", whole))->geometry->triangles.size(), 2u);
     std::mt19937 random(20240611);
     for (int i = 0; i < 400; ++i) {
@@ -58,7 +34,7 @@ TEST_F(GltfDamage, RandomBytesNeverCrash) {
 
 TEST_F(GltfDamage, RandomValuesNeverCrash) {
     const std::string data = bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytes_of<std::uint16_t>({0, 1, 2, 0});
-    const json flat = rich(triangle()).flatten();
+    const json flat = rich_document(triangle()).flatten();
     const std::vector<json> odd{nullptr,
                                 true,
                                 -1,

@@ -1,6 +1,7 @@
 #include <random>
 
 #include "tests/core/p3f_text.h"
+#include "tests/core/rich_files.h"
 
 namespace glint {
 namespace {
@@ -159,16 +160,6 @@ INSTANTIATE_TEST_SUITE_P(
                ":12: unexpected number '9', skipped"}),
     [](const auto& test) { return std::string(test.param.name); });
 
-// One of everything, so that mutations reach each statement.
-constexpr std::string_view kEverything =
-    "# all words\naccel bvh\nspp 4\nbclr 0.1 0.2 0.3\nenv skybox\nfire skybox\ncamera\neye 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\n"
-    "hither 0.01\nresolution 64 48\naperture 2\nfocal 1.5\ntime0 0\nl 1 2 3 1 1 1\nlight punctual 4 5 6 1 1 1\n"
-    "light quad 1 2 3 1 1 1 2 2 3 1 2 4 16\nal 1 2 3 0 -1 0 1 1 1 1 1\nf 1 0.5 0.5 0.5 0.5 10 0 1\ns 0 0 0 1\n"
-    "mat 1 1 1 0 1 1 1 0.2 20 1 1.35\nbox 0 0 0 1 1 1\naabb 1 1 1 0 0 0\npl 0 0 0 1 0 0 0 1 0\nnpl 0 0 1 2\n"
-    "p 5 0 0 0 2 0 0 2 2 0 1 1 0 0 2 0\npp 3 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 1\n"
-    "mesh 4 2\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 2 3\n-1 -2 1\nc 0 0 0 1 0 0 2 0.5\nms 0 0 0 1 1 1 0.5 0 1\n"
-    "sm 0 0 0 1 1 1 0.5 0 1\na 0 0 0 1 1 1 10\nxyzzy 1 2 3\nply mesh.ply\n";
-
 TEST(P3fMutations, NeverDoWorseThanASceneError) {
     std::mt19937 random(20240607);
     const auto below = [&](std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(random() % n); };
@@ -176,7 +167,8 @@ TEST(P3fMutations, NeverDoWorseThanASceneError) {
     int accepted = 0;
     for (int round = 0; round < 6000; ++round) {
         // Without the last line every second text would end at a missing file.
-        std::string text(kEverything.substr(0, round % 2 == 0 ? kEverything.size() : kEverything.rfind("ply")));
+        std::string text(
+            test::kEveryStatement.substr(0, round % 2 == 0 ? test::kEveryStatement.size() : test::kEveryStatement.rfind("ply")));
         for (std::size_t change = 1 + below(4); change > 0; --change) {
             const std::size_t at = below(text.size());
             switch (below(4)) {
