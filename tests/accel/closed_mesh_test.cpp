@@ -25,12 +25,15 @@ void for_each_structure(const std::shared_ptr<const Geometry>& geometry, const V
     }
 }
 
+// The instruction set that is used; the others are compared with it elsewhere.
+bool is_in_use(const std::string& name) { return name.ends_with(kIsaNames[static_cast<std::size_t>(isa_in_use())]); }
+
 // From within the ball to points of its edges (or its vertices): every ray must be stopped.
 void expect_no_leak(bool vertices) {
     const auto geometry = std::make_shared<const Geometry>(scenes::closed_ball());
     const glm::vec3 center = geometry->bounds().center();
-    const int batches = scale(120, 12000);
     for_each_structure(geometry, [&](const auto& accelerator, const std::string& name) {
+        const int batches = is_in_use(name) ? scale(4000, 400000) : scale(1000, 40000);
         Random random(vertices ? 7 : 6);
         RayBatch batch;
         HitBatch hits;
@@ -88,9 +91,7 @@ TEST(Segments, S_SHD_04_BlockedExactlyWhereThereIsAHit) {
     for (const auto build : {&scenes::mixed, &scenes::sphereflake}) {
         const auto geometry = std::make_shared<const Geometry>(build());
         for_each_structure(geometry, [&](const auto& accelerator, const std::string& name) {
-            // All of them in the instruction set that is used, the others are compared with it elsewhere.
-            const bool in_use = name.ends_with(kIsaNames[static_cast<std::size_t>(isa_in_use())]);
-            compare(accelerator, *geometry, in_use ? count / 2 : count / 20, name);
+            compare(accelerator, *geometry, is_in_use(name) ? count / 2 : count / 20, name);
         });
     }
     const auto few = std::make_shared<const Geometry>(scenes::mixture(5, 3, 1.0f));

@@ -168,11 +168,18 @@ TEST(Triangle, S_TRI_08_EveryOneOf1024RaysToAnEdgeHits) {
 
 TEST(Triangle, S_TRI_09_AClosedMeshFarFromTheOriginHoldsEveryRay) {
     const glm::dvec3 center(148376.0, 1234.0, -223423.0);
-    const Bvh bvh(std::make_shared<const Geometry>(tessellated_ball(center, 2.0, 200, 100)));
+    const auto geometry = std::make_shared<const Geometry>(tessellated_ball(center, 2.0, 200, 100));
+    const Bvh bvh(geometry);
     Random random(9);
     int misses = 0;
-    for (int i = 0; i < 20000; ++i) {
-        const Ray ray{glm::vec3(center) + random.in_cube(-1.0f, 1.0f), random.direction()};
+    for (int i = 0; i < scale(1000000, 100000000); ++i) {
+        // Anywhere, to a vertex, to an edge.
+        Ray ray{glm::vec3(center) + random.in_cube(-1.0f, 1.0f), random.direction()};
+        if (i % 3 != 0) {
+            const auto& corners = geometry->triangles[random.below(geometry->triangles.size())];
+            const glm::vec3 a = geometry->vertices[corners[0]], b = geometry->vertices[corners[1]];
+            ray.direction = a - ray.origin + (i % 3 == 1 ? 0.0f : random.uniform(0.0f, 1.0f)) * (b - a);
+        }
         if (!bvh.closest_hit(ray).found() && misses++ == 0) ADD_FAILURE() << text(ray);
     }
     EXPECT_EQ(misses, 0);

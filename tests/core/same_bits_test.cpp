@@ -13,7 +13,7 @@ namespace {
 
 constexpr AcceleratorKind kAll[] = {AcceleratorKind::none, AcceleratorKind::grid, AcceleratorKind::bvh};
 
-// Scenes that together use every primitive but cones, every light, glass, mirrors, lens, sky and a cube of colours.
+// Scenes that together use every primitive, every light, glass, mirrors, lens, sky and a cube of colours.
 const char* const kScenes[] = {"builtin:balls,level=2", "builtin:mount,level=4", "builtin:balls_box",
                                "builtin:dof",           "builtin:cornell",       "builtin:glass,what=nested"};
 
@@ -111,27 +111,50 @@ TEST_P(SameBits, S_DET_01_AfterPausesAndRestarts) {
 }
 
 // Scaling by a power of two is exact, so any absolute epsilon shows as a difference.
+std::shared_ptr<const Scene> scaled(const Scene& scene, float f) {
+    auto result = std::make_shared<Scene>(scene);
+    auto g = std::make_shared<Geometry>(*scene.geometry);
+    for (auto& v : g->vertices) v *= f;
+    for (auto& s : g->spheres) s.center *= f, s.radius *= f;
+    for (auto& b : g->boxes) b.lo *= f, b.hi *= f;
+    for (auto& c : g->cones) c.base *= f, c.apex *= f, c.base_radius *= f, c.apex_radius *= f;
+    for (auto& plane : g->planes) plane.offset *= static_cast<double>(f);
+    result->geometry = g;
+    for (auto& l : result->lights) {
+        l.position *= f, l.edge1 *= f, l.edge2 *= f, l.radius *= f, l.range *= f;
+        const bool intensity = l.falloff == Light::Falloff::physical && l.shape == Light::Shape::point;
+        if (intensity) l.emission *= f * f;
+    }
+    for (auto& c : result->cameras) c.eye *= f, c.target *= f, c.lens_radius *= f, c.focus_distance *= f;
+    return result;
+}
+
 TEST_P(SameBits, S_MET_01_AtEveryScaleOfTwo) {
     Picture p = picture(2);
     p.settings.features = everything();
     const Image expected = render_picture(scene, p);
     for (const int k : {-20, -10, 10, 20}) {
-        const float f = std::ldexp(1.0f, k);
-        auto scaled = std::make_shared<Scene>(*scene);
-        auto g = std::make_shared<Geometry>(*scene->geometry);
-        for (auto& v : g->vertices) v *= f;
-        for (auto& s : g->spheres) s.center *= f, s.radius *= f;
-        for (auto& b : g->boxes) b.lo *= f, b.hi *= f;
-        for (auto& c : g->cones) c.base *= f, c.apex *= f, c.base_radius *= f, c.apex_radius *= f;
-        for (auto& plane : g->planes) plane.offset *= static_cast<double>(f);
-        scaled->geometry = g;
-        for (auto& l : scaled->lights) {
-            l.position *= f, l.edge1 *= f, l.edge2 *= f, l.radius *= f, l.range *= f;
-            const bool intensity = l.falloff == Light::Falloff::physical && l.shape == Light::Shape::point;
-            if (intensity) l.emission *= f * f;
-        }
-        for (auto& c : scaled->cameras) c.eye *= f, c.target *= f, c.lens_radius *= f, c.focus_distance *= f;
-        EXPECT_EQ(differing_pixels(expected, render_picture(scaled, p)), 0u) << "2^" << k;
+        EXPECT_EQ(differing_pixels(expected, render_picture(scaled(*scene, std::ldexp(1.0f, k)), p)), 0u) << "2^" << k;
+    }
+}
+
+// Each of the 256 sets of features, with samplers, approximations and accelerators taking turns.
+TEST_P(SameBits, S_MET_01_WithEverySetOfFeatures) {
+    const auto tiny = scaled(*scene, 0x1p-20f), huge = scaled(*scene, 0x1p20f);
+    Picture p;
+    p.width = 14, p.height = 10, p.threads = 1;
+    p.settings.depth = 4;
+    for (std::uint32_t bits = 0; bits < 256; ++bits) {
+        p.settings.features.bits = bits;
+        p.settings.sampler = static_cast<SamplerKind>(bits % 5);
+        p.settings.fresnel = static_cast<Fresnel>(bits % 2);
+        p.settings.glass = static_cast<GlassBranches>(bits / 2 % 2);
+        p.settings.cutoff = bits % 3 == 0 ? 0.02f : 0.0f;
+        p.settings.light_samples = 1 + static_cast<int>(bits / 4 % 2);
+        p.accelerator = kAll[bits % 3];
+        const Image expected = render_picture(scene, p);
+        EXPECT_EQ(differing_pixels(expected, render_picture(tiny, p)), 0u) << "features " << bits;
+        EXPECT_EQ(differing_pixels(expected, render_picture(huge, p)), 0u) << "features " << bits;
     }
 }
 
@@ -195,6 +218,8 @@ TEST_P(SameBits, OneSampleWhereNothingIsRandom) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Builtin, SameBits, testing::ValuesIn(kScenes), test_name);
+INSTANTIATE_TEST_SUITE_P(Asset, SameBits, testing::Values(GLINT_TESTS "/../assets/soft_shadow.p3f"),
+                         [](const auto&) { return "cones"; });
 
 // The paper's seven scenes as their authors wrote them, at reduced size.
 class CourseScene : public testing::TestWithParam<const char*> {};
