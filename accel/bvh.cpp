@@ -7,6 +7,12 @@
 #include "accel/instance_level.h"
 
 namespace glint {
+namespace {
+
+// Widths of a span in leaves up to which its frustum alone is faster than packets.
+constexpr float kTriangleSpan = 2.0f, kSphereSpan = 6.0f;
+
+}  // namespace
 
 const BvhKernels& bvh_kernels(Isa isa) {
     switch (isa) {
@@ -35,7 +41,7 @@ BvhView BvhTree::view(const Geometry& geometry) const {
     }
     view.magnitude = bounds.magnitude();
     view.only_triangles = geometry.bounded_count() == geometry.triangles.size();
-    view.leaf_extent = leaf_extent;
+    view.frustum_extent = leaf_extent * (2 * geometry.spheres.size() > geometry.bounded_count() ? kSphereSpan : kTriangleSpan);
     return view;
 }
 

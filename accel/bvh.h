@@ -29,7 +29,7 @@ struct BvhTree {
     Units units;  // empty for an empty scene
     Aabb bounds;
     int depth = 0;             // levels of nodes
-    float leaf_extent = 0.0f;  // see BvhView
+    float leaf_extent = 0.0f;  // mean of the leaves' widest sides: how fine the geometry is that has most of them
     std::size_t nodes = 0, leaves = 0;
 
     [[nodiscard]] BvhView view(const Geometry& geometry) const;

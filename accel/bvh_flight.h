@@ -39,15 +39,6 @@ struct Flight {
     }
 };
 
-inline void fetch(const BvhView& bvh, BvhRef ref) noexcept {
-    const auto* p = reinterpret_cast<const char*>(&bvh.at<BvhNode>(ref));
-    _mm_prefetch(p, _MM_HINT_T0);
-    _mm_prefetch(p + 64, _MM_HINT_T0);
-    _mm_prefetch(p + 128, _MM_HINT_T0);
-    _mm_prefetch(p + 192, _MM_HINT_T0);
-    _mm_prefetch(p + 256, _MM_HINT_T0);
-}
-
 // Pushes all children entered, none or many alike, and pops one: no branch hangs on how many.
 template <bool any>
 inline void step_node(const BvhView& bvh, Flight& f) noexcept {

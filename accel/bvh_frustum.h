@@ -9,12 +9,12 @@
 namespace glint::GLINT_ISA {
 
 constexpr int kFrustumGroups = 4;
-// The span's width in leaves up to which it pays.
-constexpr float kFrustumWidth = 2.5f;
 
 inline void traverse_frustum(const BvhView& bvh, Group* groups, const Span* spans, const Span& all, unsigned octant) noexcept {
     const SpanTest test(all);
     const float x = all.shears.middle_x(), y = all.shears.middle_y(), spread = all.shears.spread();
+    SpanTest parts[kFrustumGroups];  // for primitives without edges
+    for (int i = 0; i < kFrustumGroups && !bvh.only_triangles; ++i) parts[i] = SpanTest(spans[i]);
     EdgeTest tests[kFrustumGroups];
     for (int i = 0; i < kFrustumGroups; ++i) tests[i] = EdgeTest(spans[i].shears, x, y, all.forward);
     // Depths count from the common origin here, but for those of nodes.
@@ -37,6 +37,7 @@ inline void traverse_frustum(const BvhView& bvh, Group* groups, const Span* span
             const BvhNode& node = bvh.at<BvhNode>(at);
             Float8 depth;
             const unsigned mask = test(node.bounds, Float8::set(start + end), depth);
+            for (unsigned m = mask; m != 0; m &= m - 1) fetch(bvh, node.child[__builtin_ctz(m)]);
             if (mask != 0) {
                 at = (mask & (mask - 1)) == 0 ? node.child[__builtin_ctz(mask)]
                                               : push_children(stack, top, node, mask, 3 * octant, depth);
@@ -58,9 +59,22 @@ inline void traverse_frustum(const BvhView& bvh, Group* groups, const Span* span
                 }
                 end = farthest();
             }
+        } else if (static_cast<PrimitiveKind>(leaf_kind(at)) == PrimitiveKind::sphere) {
+            const auto& b = bvh.at<SphereBlock>(at);
+            const Float8 before = Float8::set(start + end);
+            const unsigned entered = test.spheres(b, before) & distinct(b.id);
+            if (entered != 0) {
+                unsigned m = 0;
+                for (int i = 0; i < kFrustumGroups; ++i) m |= (parts[i].spheres(b, before) & entered) << (kBvhWidth * i);
+                for (; m != 0; m &= m - 1) {
+                    const int bit = __builtin_ctz(m), i = bit / kBvhWidth, k = bit % kBvhWidth;
+                    groups[i].meet<false, true>(b, k, spans[i], groups[i].active);
+                }
+                end = farthest();
+            }
         } else {
             for (int i = 0; i < kFrustumGroups; ++i) {
-                meet_leaf<false>(at, bvh, spans[i], SpanTest(spans[i]), Float8::set(start + end), groups[i].active, groups[i]);
+                meet_leaf<false>(at, bvh, spans[i], parts[i], Float8::set(start + end), groups[i].active, groups[i]);
             }
             end = farthest();
         }

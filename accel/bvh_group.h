@@ -213,6 +213,10 @@ struct Group {
         }
     }
 
+    static DoubleVector spread_corner(const float (&p)[3][kBvhWidth], int k) noexcept {
+        const float xyz[3] = {p[0][k], p[1][k], p[2][k]};
+        return spread(xyz);
+    }
     // In double, eight lanes at a time; halves without a lane of `lanes` miss.
     template <class Half>
     void halves(unsigned lanes, Half meet_half, Float16& at, Float16& face) const noexcept {
@@ -226,11 +230,16 @@ struct Group {
         at = join(ts[0], ts[1]);
         face = join(faces[0], faces[1]);
     }
-    template <bool any>
+    // `common`: all rays start at one point.
+    template <bool any, bool common>
     void meet(const SphereBlock& b, int k, const Span& span, unsigned lanes) noexcept {
-        const auto center = [&](int axis) { return Float16::set(b.center[axis][k]); };
+        const auto center = [&](int axis) { return b.center[axis][k]; };
+        const auto start = [&](int axis) { return batch->origin[axis][first]; };
+        const auto from_origin = [&](int axis) {
+            return common ? Float16::set(center(axis) - start(axis)) : Float16::set(center(axis)) - o[axis];
+        };
         const auto [maybe, surely] = near_spheres<any, Float16>(
-            center(span.kx) - o[span.kx], center(span.ky) - o[span.ky], o[span.kz] - center(span.kz), Float16::set(b.radius[k]),
+            from_origin(span.kx), from_origin(span.ky), Float16::set(0.0f) - from_origin(span.kz), Float16::set(b.radius[k]),
             {shear_x, shear_y, inverse_length2, d[span.kz], Float16::load(t)});
         lanes &= maybe.bits();
         if constexpr (any) {
@@ -240,25 +249,24 @@ struct Group {
             lanes &= ~enter;
         }
         if (lanes == 0) return;
-        const auto spread = [](float x) { return Double8::set(static_cast<double>(x)); };
-        const DoubleVector c{spread(b.center[0][k]), spread(b.center[1][k]), spread(b.center[2][k])};
-        const Double8 r = spread(b.radius[k]);
+        const auto wide = [](float x) { return static_cast<double>(x); };
+        const auto to_origin = [&](int axis) { return Double8::set(wide(start(axis)) - wide(center(axis))); };
+        const DoubleVector c = spread_corner(b.center, k);
+        const Double8 r = Double8::set(wide(b.radius[k]));
         Float16 at, none;
         halves(
             lanes,
             [&](const DoubleVector& from, const DoubleVector& along, Float8 limit, Float8&) {
-                return meet_spheres({from.x - c.x, from.y - c.y, from.z - c.z}, along, r, limit);
+                const DoubleVector f = common ? DoubleVector{to_origin(0), to_origin(1), to_origin(2)}
+                                              : DoubleVector{from.x - c.x, from.y - c.y, from.z - c.z};
+                return meet_spheres(f, along, r, limit);
             },
             at, none);
         take<any>(nearer<any>(lt(none, at), at, lanes, b.id[k]), at, none, none, b.id[k]);
     }
     template <bool any>
     void meet(const BoxBlock& b, int k, unsigned lanes) noexcept {
-        const auto corner = [k](const float(&p)[3][kBvhWidth]) {
-            return DoubleVector{Double8::set(static_cast<double>(p[0][k])), Double8::set(static_cast<double>(p[1][k])),
-                                Double8::set(static_cast<double>(p[2][k]))};
-        };
-        const DoubleVector lo = corner(b.lo), hi = corner(b.hi);
+        const DoubleVector lo = spread_corner(b.lo, k), hi = spread_corner(b.hi, k);
         const Float16 zero = Float16::set(0.0f);
         Float16 at, face;
         halves(

@@ -103,7 +103,7 @@ void end(const Group& g, HitBatch& hits) noexcept {
 // Whether the span is narrow against the leaves.
 bool narrow_beside_leaves(const BvhView& bvh, const Span& s) noexcept {
     const float x = (s.x.hi_a - s.x.lo_a) + (s.x.hi_b - s.x.lo_b), y = (s.y.hi_a - s.y.lo_a) + (s.y.hi_b - s.y.lo_b);
-    return 0.5f * (x < y ? y : x) <= kFrustumWidth * bvh.leaf_extent;
+    return 0.5f * (x < y ? y : x) <= bvh.frustum_extent;
 }
 
 // Groups that cannot be gathered go to `leftovers`, or ray by ray where there are none.

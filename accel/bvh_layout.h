@@ -52,8 +52,8 @@ struct BvhView {
     const Geometry* geometry = nullptr;
     float lo[3] = {}, hi[3] = {};  // bounds of everything
     bool only_triangles = false;
-    float magnitude = 0.0f;    // the largest absolute coordinate
-    float leaf_extent = 0.0f;  // mean of the leaves' widest sides: how fine the geometry is that has most of them
+    float magnitude = 0.0f;       // the largest absolute coordinate
+    float frustum_extent = 0.0f;  // width of a span up to which its frustum alone is worth the most
 
     // A reference to a node is the number of its unit: no bit above is set.
     [[nodiscard, gnu::always_inline]] const BvhNode& node(BvhRef r) const {

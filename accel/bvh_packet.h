@@ -124,7 +124,7 @@ inline void meet_leaf(BvhRef leaf, const BvhView& bvh, const Span& span, const S
                 }
                 return;
             }
-            for (unsigned m = spheres; m != 0; m &= m - 1) g.meet<any>(b, __builtin_ctz(m), span, alive());
+            for (unsigned m = spheres; m != 0; m &= m - 1) g.meet<any, false>(b, __builtin_ctz(m), span, alive());
             return;
         }
         case PrimitiveKind::box: {
@@ -170,6 +170,7 @@ inline void traverse_group(const BvhView& bvh, Group& g, const Span& span, const
             if constexpr (order == ChildOrder::as_stored) {
                 for (unsigned m = mask; m != 0; m &= m - 1) {
                     const int k = __builtin_ctz(m);
+                    fetch(bvh, node.child[k]);
                     stack.push_if_any(node.child[k], slabs(node, k, limit) & lanes);
                 }
             } else if (mask != 0) {
@@ -179,6 +180,7 @@ inline void traverse_group(const BvhView& bvh, Group& g, const Span& span, const
                 const int count = sort_children(node, mask, 3 * octant, far_first);
                 for (int i = 0; i < count; ++i) {
                     const auto k = static_cast<int>(far_first[i]);
+                    fetch(bvh, node.child[k]);
                     const unsigned entering = slabs(node, k, limit) & lanes;
                     if (!any && entering == 0) continue;
                     if (!any) stack.depth[stack.top] = depths[k];

@@ -86,4 +86,14 @@ inline unsigned enter(const BvhNode& node, const SlabRay& ray, Float8 limit, Flo
     return le(near, min(min(f[0], f[1]), min(f[2], limit))).bits();
 }
 
+// Asks memory for a whole node or leaf.
+inline void fetch(const BvhView& bvh, BvhRef ref) noexcept {
+    const auto* p = reinterpret_cast<const char*>(&bvh.at<BvhNode>(ref));
+    _mm_prefetch(p, _MM_HINT_T0);
+    _mm_prefetch(p + 64, _MM_HINT_T0);
+    _mm_prefetch(p + 128, _MM_HINT_T0);
+    _mm_prefetch(p + 192, _MM_HINT_T0);
+    _mm_prefetch(p + 256, _MM_HINT_T0);
+}
+
 }  // namespace glint::GLINT_ISA
