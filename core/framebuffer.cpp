@@ -36,7 +36,7 @@ void Framebuffer::copy_out(std::size_t tile, std::uint64_t generation, std::vect
         sums.assign(t.rect.pixels(), PixelSum());
 }
 
-void Framebuffer::write_back(std::size_t tile, std::uint64_t generation, const std::vector<PixelSum>& sums, int samples,
+void Framebuffer::write_back(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums, int samples,
                              const Doublings& doublings) {
     Tile& t = tiles_[tile];
     if (t.generation != generation) t.doublings.clear();
@@ -46,7 +46,7 @@ void Framebuffer::write_back(std::size_t tile, std::uint64_t generation, const s
         t.previous_samples = t.generation == generation ? t.samples : 0;
         t.previous.swap(t.sums);
     }
-    t.sums = sums;
+    t.sums.swap(sums);
     t.samples = samples;
     t.generation = generation;
 }

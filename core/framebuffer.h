@@ -36,8 +36,12 @@ struct PixelSum {
 
 private:
     void note_doubling(Doublings& doublings) {
+        if (taken == 1) {
+            before = radiance;
+            return;
+        }
         const glm::dvec3 now = mean();
-        if (taken > 1) doublings[static_cast<std::size_t>(std::countr_zero(taken)) - 1].add(relative_change(now, before));
+        doublings[static_cast<std::size_t>(std::countr_zero(taken)) - 1].add(relative_change(now, before));
         before = now;
     }
 };
@@ -62,8 +66,9 @@ public:
     [[nodiscard]] int samples(std::size_t tile, std::uint64_t generation) const;
     // The tile's sums, row by row; zeros when it has none of this generation.
     void copy_out(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums) const;
-    // doublings: those between the samples that the tile had and `samples`.
-    void write_back(std::size_t tile, std::uint64_t generation, const std::vector<PixelSum>& sums, int samples,
+    // Takes the sums, and leaves a vector without meaning whose memory can be used again. doublings: those between the samples
+    // that the tile had and `samples`.
+    void write_back(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums, int samples,
                     const Doublings& doublings = {});
     // One colour per preview block of the tile, row by row.
     void write_preview(std::size_t tile, std::uint64_t generation, const std::vector<glm::vec3>& blocks);

@@ -76,6 +76,16 @@ public:
     // Samples [first, last) of a pixel.
     void add(std::size_t cell, int x, int y, int first, int last) {
         const std::uint32_t pixel = random_ ? pixel_sampler(in_, x, y).pixel() : 0;
+        if (last - first == 1) {
+            // Without the calls that a row of samples is worth.
+            cells_[count_] = static_cast<std::uint32_t>(cell);
+            x_[count_] = static_cast<float>(x);
+            y_[count_] = static_cast<float>(y);
+            work_.lanes.pixel[count_] = pixel;
+            work_.lanes.index[count_] = static_cast<std::uint32_t>(first);
+            if (++count_ == kRayBatch) flush();
+            return;
+        }
         for (int k = first; k < last && !stopped_;) {
             const auto n = std::min(static_cast<std::size_t>(last - k), kRayBatch - count_);
             std::fill_n(cells_ + count_, n, static_cast<std::uint32_t>(cell));
