@@ -9,6 +9,7 @@
 #include <OpenEXR/ImfStandardAttributes.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -62,6 +63,30 @@ Imf::Slice slice(float* first, int width, const Imath::Box2i& window) {
                             kStep * static_cast<std::size_t>(width), 1, 1, 0.0);
 }
 
+// Whether each attribute of the headers lies within the file: the library takes the memory that one claims before it reads it.
+bool attributes_fit(const std::string& bytes) {
+    std::size_t at = 8;
+    const bool several_parts = bytes.size() > at && (bytes[5] & 0x10) != 0;
+    do {
+        while (at < bytes.size() && bytes[at] != '\0') {
+            for (int word = 0; word < 2; ++word) {  // its name and its type
+                at = bytes.find('\0', at);
+                if (at == std::string::npos) return false;
+                ++at;
+            }
+            std::uint32_t size = 0;
+            for (std::size_t k = 0; k < 4 && at + k < bytes.size(); ++k) {
+                size |= std::uint32_t{static_cast<std::uint8_t>(bytes[at + k])} << (8 * k);
+            }
+            at += 4;
+            if (at > bytes.size() || size > bytes.size() - at) return false;
+            at += size;
+        }
+        ++at;
+    } while (several_parts && at < bytes.size() && bytes[at] != '\0');
+    return at <= bytes.size();
+}
+
 constexpr int kMaxSide = 65535;
 // Deflate, the strongest of the format's codes, makes 1032 bytes of one.
 constexpr std::int64_t kMostExpansion = 1100;
@@ -71,6 +96,7 @@ constexpr std::int64_t kMostExpansion = 1100;
 bool is_exr(const std::string& bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }
 
 Image decode_exr(const std::string& bytes, const std::string& name) try {
+    if (!attributes_fit(bytes)) throw ImageError(name + ": the EXR picture is broken: its header is cut short");
     // Asked before the library allocates what a header claims: a table of all lines.
     Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);
     Source source(bytes);

@@ -222,6 +222,8 @@ TEST_F(DamagedFile, ClaimsAreNotBelieved) {
     }
     // 16000 x 16000 RGB, by its header alone.
     expect_refused(std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x3e\x80\0\0\x3e\x80\x08\2\0\0\0", 29) + std::string(300, 'x'));
+    // An attribute of 1.6 GB, of a type that OpenEXR does not know.
+    expect_refused(std::string("\x76\x2f\x31\x01\2\0\0\0x\0y\0\0\0\0\x60", 16) + std::string(300, '\0'));
     constexpr std::int32_t kBillion = 1000000000, kLeast = std::numeric_limits<std::int32_t>::min(), kMost = ~kLeast;
     for (const std::array<std::int32_t, 4> window : {std::array{0, 0, kBillion, kBillion},
                                                      {0, 0, 16383, 16383},
