@@ -172,7 +172,8 @@ TEST(Triangle, S_TRI_09_AClosedMeshFarFromTheOriginHoldsEveryRay) {
     const Bvh bvh(geometry);
     Random random(9);
     int misses = 0;
-    for (int i = 0; i < scale(1000000, 100000000); ++i) {
+    // So far out the padding of the boxes is half the ball: a ray takes 25 microseconds.
+    for (int i = 0; i < scale(100000, 10000000); ++i) {
         // Anywhere, to a vertex, to an edge.
         Ray ray{glm::vec3(center) + random.in_cube(-1.0f, 1.0f), random.direction()};
         if (i % 3 != 0) {
