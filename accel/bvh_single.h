@@ -16,6 +16,25 @@ struct TraversalStack {
     float near[kStackSize];
 };
 
+#if defined(__AVX2__) && !defined(__AVX512VL__)
+// For each set of lanes their numbers in front, eight bytes that a permutation widens: what AVX-512 calls compress.
+struct FrontLanes {
+    alignas(64) std::uint64_t of[256];
+    constexpr FrontLanes() : of() {
+        for (unsigned set = 0; set < 256; ++set) {
+            int n = 0;
+            for (unsigned lane = 0; lane < 8; ++lane) {
+                if ((set >> lane & 1u) != 0) of[set] |= std::uint64_t{lane} << (8 * n++);
+            }
+        }
+    }
+};
+inline constexpr FrontLanes kFrontLanes;
+inline __m256i front_lanes(unsigned set) noexcept {
+    return _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(kFrontLanes.of + set)));
+}
+#endif
+
 // Pushes all children of `mask`, none or many, far to near, and returns the place in the node's order of the nearest one.
 inline int push_all(TraversalStack& stack, int& top, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
 #if defined(__AVX512VL__)
@@ -29,6 +48,18 @@ inline int push_all(TraversalStack& stack, int& top, const BvhNode& node, unsign
     _mm256_storeu_ps(stack.near + top, _mm256_maskz_compress_ps(present, sorted));
     top += __builtin_popcount(mask);
     return 31 - __builtin_clz(static_cast<unsigned>(present) | 1u);
+#elif defined(__AVX2__)
+    const __m256i order =
+        _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(shift));
+    const __m256 inf = _mm256_set1_ps(HUGE_VALF);
+    const __m256 sorted = _mm256_permutevar8x32_ps(_mm256_blendv_ps(inf, near.v, mask8_from_bits(mask)), order);
+    const __m256i refs = _mm256_permutevar8x32_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.child)), order);
+    const auto present = static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(sorted, inf, _CMP_LT_OQ)));
+    const __m256i front = front_lanes(present);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_permutevar8x32_epi32(refs, front));
+    _mm256_storeu_ps(stack.near + top, _mm256_permutevar8x32_ps(sorted, front));
+    top += __builtin_popcount(mask);
+    return 31 - __builtin_clz(present | 1u);
 #else
     alignas(32) float distance[kBvhWidth];
     near.store(distance);
@@ -59,6 +90,10 @@ inline void push_all_unsorted(TraversalStack& stack, int& top, const BvhNode& no
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top),
                         _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), refs));
     top += __builtin_popcount(mask);
+#elif defined(__AVX2__)
+    const __m256i refs = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_permutevar8x32_epi32(refs, front_lanes(mask)));
+    top += __builtin_popcount(mask);
 #else
     for (; mask != 0; mask &= mask - 1) stack.ref[top++] = node.child[__builtin_ctz(mask)];
 #endif
@@ -79,6 +114,14 @@ inline int sort_children(const BvhNode& node, unsigned mask, unsigned shift, std
     const __m256i bit = _mm256_sllv_epi32(_mm256_set1_epi32(1), order);
     const __mmask8 present = _mm256_test_epi32_mask(bit, _mm256_set1_epi32(static_cast<int>(mask)));
     _mm256_store_si256(reinterpret_cast<__m256i*>(far_first), _mm256_maskz_compress_epi32(present, order));
+    return __builtin_popcount(mask);
+#elif defined(__AVX2__)
+    const __m256i order = _mm256_and_si256(
+        _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(shift)),
+        _mm256_set1_epi32(7));
+    const __m256 entered = _mm256_permutevar8x32_ps(mask8_from_bits(mask), order);
+    const __m256i front = front_lanes(static_cast<unsigned>(_mm256_movemask_ps(entered)));
+    _mm256_store_si256(reinterpret_cast<__m256i*>(far_first), _mm256_permutevar8x32_epi32(order, front));
     return __builtin_popcount(mask);
 #else
     int count = 0;
