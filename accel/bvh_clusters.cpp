@@ -13,8 +13,9 @@ namespace {
 // Primitives of one cluster, and of the cells in it that are cut into leaves. Larger ones make a worse tree, smaller ones more
 // work above them.
 constexpr std::size_t kClusterSize = 160, kCellSize = 32;
-// Stretches of the curve that one task writes, so many at a time: what they write stays in a cache until it is copied.
-constexpr std::size_t kStretch = 1u << 11, kBatch = 8;
+// Stretches of the curve that one task writes, so many at a time: fewer leave threads waiting for each other, more are not copied
+// from a cache.
+constexpr std::size_t kStretch = 1u << 11, kBatch = 64;
 
 // What a task writes; references count from its own first unit.
 struct Stretch {
