@@ -87,8 +87,7 @@ class Writer {
 public:
     Writer(const Geometry& geometry, const ParallelFor& parallel_for) : geometry_(geometry), parallel_for_(parallel_for) {
         const std::size_t n = geometry.bounded_count();
-        out_.written.units.reserve(n + n / 2 + 64);
-        out_.written.append_root();
+        out_.written.begin_tree(n);
         out_.leaves.reserve(n / 4 + 64);
         out_.clusters.reserve(n / 16 + 64);
     }

@@ -50,8 +50,7 @@ QualitySets::QualitySets(const Geometry& geometry, const ParallelFor& parallel_f
 
 BvhPart QualitySets::ahead() {
     BvhPart part;
-    part.units.reserve(refs_.size() + refs_.size() / 2 + 64);
-    part.append_root();
+    part.begin_tree(refs_.size());
     return part;
 }
 

@@ -114,7 +114,10 @@ std::size_t BvhPart::append_node() {
     return origin + unit;
 }
 
-void BvhPart::append_root() { append<BvhNode>(units); }
+void BvhPart::begin_tree(std::size_t primitives) {
+    units.reserve(primitives + primitives / 2 + 64);
+    append<BvhNode>(units);
+}
 
 BvhRef BvhPart::append_leaf(const Geometry& geometry, std::span<PrimitiveId> ids) {
     ++leaves;
