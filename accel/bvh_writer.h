@@ -22,8 +22,8 @@ struct BvhPart {
     BvhNode& node(std::size_t unit) { return *reinterpret_cast<BvhNode*>(units[unit - origin].bytes); }
     // Throws std::length_error where references end.
     std::size_t append_node();
-    // For a whole tree: reserves what usually suffices (too much costs addresses, as pages never written are never there) and makes
-    // room for the root, which is written and counted later.
+    // For a whole tree: reserves what usually suffices (too much costs addresses, as pages never written are never there) and
+    // makes room for the root, which is written and counted later.
     void begin_tree(std::size_t primitives);
     // A leaf of 1 to kBvhWidth primitives of one kind, in any order.
     BvhRef append_leaf(const Geometry& geometry, std::span<PrimitiveId> ids);
