@@ -116,7 +116,9 @@ protected:
         EXPECT_EQ(comparison.mismatches(), 0u) << "of " << comparison.rays() << " rays; first: " << comparison.first();
     }
     Comparison comparison{GetParam()};
-    const std::size_t wanted = GetParam().rays * scale<std::size_t>(1, 25);
+    // A night's three tests are a million rays for each scene, a quarter of it where all rays meet most primitives.
+    const std::size_t wanted = GetParam().rays < 4000 ? GetParam().rays * scale<std::size_t>(1, 25)
+                                                      : std::max(GetParam().rays, scale<std::size_t>(0, 310000));
 };
 
 // S-GRD-02..05, S-SHD-04, S-BOX-02 and S-PLN-03 as well: the same id and the same bits of t, u and v from every structure,
