@@ -63,6 +63,7 @@ std::string render_command(const Subject& subject, const RenderSettings& s, int 
     if (s.fresnel == Fresnel::schlick) c += " --fresnel schlick";
     if (s.cutoff != usual.cutoff) c += fmt::format(" --cutoff {:g}", s.cutoff);
     if (s.light_samples != usual.light_samples) c += fmt::format(" --light-samples {}", s.light_samples);
+    if (s.adaptive) c += " --adaptive";
     if (s.glass == GlassBranches::one) c += " --glass one";
     if (s.light_size) c += fmt::format(" --light-size {:g}", *s.light_size);
     if (s.background == Background::color) c += " --background color";

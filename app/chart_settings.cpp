@@ -17,8 +17,9 @@ namespace {
 enum class Acts { always, glass, branches, area_light };
 
 // What is drawn in one colour.
-enum class Kind { base, sampler, glass, depth, cutoff, light };
-constexpr std::array<const char*, 6> kKindNames{"as it comes", "sampler", "glass", "depth", "cut-off", "light samples"};
+enum class Kind { base, sampler, glass, depth, cutoff, light, adaptive };
+constexpr std::array<const char*, 7> kKindNames{"as it comes", "sampler",       "glass",   "depth",
+                                                "cut-off",     "light samples", "adaptive"};
 
 struct Knob {
     const char* name;
@@ -32,6 +33,9 @@ const Knob kKnobs[] = {
     {"as it comes", Kind::base, Acts::always, [](RenderSettings&) {}},
     {"joint", Kind::sampler, Acts::always, [](RenderSettings& s) { s.sampler = SamplerKind::joint; }},
     {"jittered", Kind::sampler, Acts::always, [](RenderSettings& s) { s.sampler = SamplerKind::jittered; }},
+    {"adaptive", Kind::adaptive, Acts::always, [](RenderSettings& s) { s.adaptive = true; }},
+    {"joint, adaptive", Kind::adaptive, Acts::always,
+     [](RenderSettings& s) { s.sampler = SamplerKind::joint, s.adaptive = true; }},
     {"schlick", Kind::glass, Acts::glass, [](RenderSettings& s) { s.fresnel = Fresnel::schlick; }},
     {"one glass branch", Kind::glass, Acts::glass, [](RenderSettings& s) { s.glass = GlassBranches::one; }},
     {"depth 1", Kind::depth, Acts::branches, [](RenderSettings& s) { s.depth = 1; }},

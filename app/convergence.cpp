@@ -9,7 +9,7 @@ ConvergenceTable::ConvergenceTable(const Options& options, const Reference* refe
 
 void ConvergenceTable::add(const Progress& p, const ErrorEstimate& e, const Renderer& renderer) {
     if (options_.convergence.empty()) return;
-    rows_ += fmt::format("{},{:.6f},{},", p.spp_min, p.seconds, p.rays.total());
+    rows_ += fmt::format("{},{:.6f},{},", p.spp, p.seconds, p.rays.total());
     const bool known = e.kind != ErrorEstimate::Kind::unknown;
     rows_ += known ? fmt::format("{:.6g},{:.6g},{:.6g},", e.relrmse, e.low, e.high) : ",,,";
     rows_ += e.kind == ErrorEstimate::Kind::estimated ? fmt::format("{:.4g},", e.slope) : ",";

@@ -109,6 +109,7 @@ nlohmann::json stats(const Job& job, const Options& o, const Progress& p, double
             {"spp", job.spp},
             {"spp_min", p.spp_min},
             {"spp_max", p.spp_max},
+            {"adaptive", job.settings.adaptive},
             {"threads", job.threads},
             {"seed", o.settings.seed},
             {"sampler", kSamplerNames[static_cast<std::size_t>(job.settings.sampler)]},
@@ -178,7 +179,7 @@ int run_render(const Options& o) {
     line.end();
     const Progress p = renderer.progress();
     const ErrorEstimate error = renderer.error();
-    if (o.noise > 0.0) job.spp = p.spp_min;
+    if (o.noise > 0.0) job.spp = p.spp;
     if (o.noise > 0.0 && !o.quiet) fmt::print(stderr, "{} at {} spp, stopped by {}\n", error_text(error), error.spp, stopped_by);
     table.write();
 

@@ -33,10 +33,11 @@ struct Preset {
     int spp, depth;
     float cutoff;
     SamplerKind sampler;
+    bool adaptive;
 };
-constexpr std::array<Preset, 3> kPresets{{{"draft", 4, 8, 0.1f, SamplerKind::sobol},
-                                          {"good", 64, 8, 0.01f, SamplerKind::joint},
-                                          {"reference", 1024, 16, 0.0f, SamplerKind::joint}}};
+constexpr std::array<Preset, 3> kPresets{{{"draft", 4, 8, 0.1f, SamplerKind::sobol, false},
+                                          {"good", 64, 8, 0.01f, SamplerKind::joint, true},
+                                          {"reference", 1024, 16, 0.0f, SamplerKind::joint, false}}};
 
 // One CLI::App that fills `o`; each value is checked where it is declared.
 class Parser {
@@ -75,12 +76,17 @@ public:
         });
         text("--sampler", "NAME", "sobol, joint (pixel, lens and first light from one sequence), jittered, random or regular",
              [this](auto n, auto v) { o_.settings.sampler = static_cast<SamplerKind>(choice(n, v, kSamplerNames)); });
+        app_.add_flag("--adaptive", o_.settings.adaptive,
+                      "samples go where they take most error away; --spp and {spp} are then the mean over pixels");
+        app_.add_flag_callback(
+            "--no-adaptive", [this] { o_.settings.adaptive = false; }, "not so, beside --preset good");
         text("--depth", "N", "bounces after the camera ray; default 8",
              [this](auto n, auto v) { o_.settings.depth = number(n, v, 0, 100000, "a number of bounces (0 to 100000)"); });
         text("--cutoff", "X", "branches of a weight up to X are not followed; default 0. Darkens by at most X times their light",
              [this](auto n, auto v) { o_.settings.cutoff = number(n, v, 0.0f, 1.0f, "a weight (0 to 1)"); });
         text("--preset", "draft|good|reference",
-             "--spp 4 --cutoff 0.1, --spp 64 --cutoff 0.01 --sampler joint or --spp 1024 --depth 16 --sampler joint; what is "
+             "--spp 4 --cutoff 0.1, --spp 64 --cutoff 0.01 --sampler joint --adaptive or --spp 1024 --depth 16 --sampler joint; "
+             "what is "
              "given beside it counts more",
              [this](auto n, auto v) {
                  std::array<std::string_view, kPresets.size()> names;
@@ -251,6 +257,7 @@ private:
         if (app_.count("--depth") == 0) o_.settings.depth = preset_->depth;
         if (app_.count("--cutoff") == 0) o_.settings.cutoff = preset_->cutoff;
         if (app_.count("--sampler") == 0) o_.settings.sampler = preset_->sampler;
+        if (app_.count("--adaptive") + app_.count("--no-adaptive") == 0) o_.settings.adaptive = preset_->adaptive;
     }
 
     [[nodiscard]] std::string option_help() const {

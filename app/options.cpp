@@ -67,13 +67,21 @@ std::optional<Options> parse_options(const std::vector<std::string>& words) {
                                          n > most ? fmt::format(", not also '{}'", o.arguments[most]) : ""));
         }
     };
+    const auto needs_error = [&](bool given, std::string_view option) {
+        if (given && o.settings.sampler == SamplerKind::regular)
+            throw UsageError(
+                fmt::format("{}: the sampler 'regular' errs the same way in every pixel and cannot tell by how much", option));
+    };
     switch (o.command) {
-        case Command::view: expect(0, 1, "one scene"); break;
+        case Command::view:
+            expect(0, 1, "one scene");
+            needs_error(o.settings.adaptive, "--adaptive");
+            break;
         case Command::render:
             expect(0, 1, "one scene");
             if (o.output.empty()) throw UsageError("glint render needs -o FILE");
-            if (o.noise > 0.0 && o.settings.sampler == SamplerKind::regular)
-                throw UsageError("--noise: the sampler 'regular' errs the same way in every pixel and cannot tell by how much");
+            needs_error(o.noise > 0.0, "--noise");
+            needs_error(o.settings.adaptive, "--adaptive");
             if (o.threshold && o.reference.empty()) throw UsageError("--reference-threshold needs --reference FILE");
             break;
         case Command::compare: expect(2, 2, "two pictures"); break;

@@ -171,14 +171,14 @@ std::string Session::title(const Progress& progress, const ErrorEstimate& error)
     if (const auto kind = accelerator_in_use()) text += fmt::format(" \u2014 {}", name_of(*kind));
     if (building_) text += fmt::format(" (building {})", name_of(wanted_kind()));
     if (submitted_) {
-        text += fmt::format(" \u2014 {} spp", progress.spp_min);
+        text += fmt::format(" \u2014 {} spp", progress.spp);
         if (progress.seconds > 0.0)
             text += fmt::format(" \u2014 {:.1f} Mrays/s", static_cast<double>(progress.rays.total()) / progress.seconds * 1e-6);
     }
     if (const std::string bar = error_text(error); !bar.empty()) text += fmt::format(" \u2014 {}", bar);
     const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     const Forecast next = forecast(error, progress, pixels, next_target(error));
-    if (next.target > 0.0 && next.spp > progress.spp_min && next.spp <= choices_.spp && !choices_.paused)
+    if (next.target > 0.0 && next.spp > progress.spp && next.spp <= choices_.spp && !choices_.paused)
         text += fmt::format(", {:g} in {:.0f} s", next.target, std::max(1.0, next.seconds - progress.seconds));
     text += " \u2014";
     const FeatureSet on = choices_.settings.features;

@@ -117,7 +117,7 @@ void Viewer::take_screenshot() {
     Image image;
     int spp = renderer_.resolve_pass(image);
     // No pass is whole yet, or one tile is far slower than all others: then what is shown.
-    if (spp == 0) spp = renderer_.progress().spp_min;
+    if (spp == 0) spp = renderer_.progress().spp;
     const bool any = !image.pixels.empty() || renderer_.resolve(image);
     if (!kind || !any) return fmt::print(stderr, "glint: no screenshot: there is no picture yet\n");
     try {

@@ -37,9 +37,10 @@ void Framebuffer::copy_out(std::size_t tile, std::uint64_t generation, std::vect
 }
 
 void Framebuffer::write_back(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums, int samples,
-                             const Doublings& doublings) {
+                             const Doublings& doublings, std::uint64_t rays) {
     Tile& t = tiles_[tile];
-    if (t.generation != generation) t.doublings.clear();
+    if (t.generation != generation) t.doublings.clear(), t.rays = 0;
+    t.rays += rays;
     t.doublings.resize(doublings_within(samples));
     for (std::size_t k = 0; k < t.doublings.size(); ++k) t.doublings[k] += doublings[k];
     if (keep_passes_) {
@@ -99,6 +100,36 @@ Doublings Framebuffer::doublings(std::uint64_t generation, int samples) const {
         for (std::size_t k = 0; k < n; ++k) sum[k] += t.doublings[k];
     }
     return sum;
+}
+
+std::vector<TileState> Framebuffer::states(std::uint64_t generation) const {
+    std::vector<TileState> states;
+    for (std::size_t i = 0; i < tiles_.size(); ++i) {
+        const Tile& t = tiles_[i];
+        TileState s{samples(i, generation), t.rect.pixels()};
+        if (t.generation == generation) {
+            const std::size_t n = t.doublings.size();
+            if (n > 0) s.change = t.doublings[n - 1].change;
+            if (n > 1) s.change_before = t.doublings[n - 2].change;
+            s.rays = t.rays;
+        }
+        states.push_back(s);
+    }
+    return states;
+}
+
+std::vector<Stratum> Framebuffer::strata(std::uint64_t generation) const {
+    std::vector<Stratum> strata;
+    for (std::size_t i = 0; i < tiles_.size(); ++i) {
+        const std::size_t known = doublings_within(samples(i, generation));
+        if (known >= strata.size()) strata.resize(known + 1);
+        Stratum& s = strata[known];
+        s.spp = 1 << known;
+        s.pixels += tiles_[i].rect.pixels();
+        for (std::size_t k = 0; k < known; ++k) s.doublings[k] += tiles_[i].doublings[k];
+    }
+    std::erase_if(strata, [](const Stratum& s) { return s.pixels == 0; });
+    return strata;
 }
 
 }  // namespace glint

@@ -8,7 +8,7 @@
 
 #include <glm/glm.hpp>
 
-#include "core/error_estimate.h"
+#include "core/adaptive.h"
 #include "core/image.h"
 
 namespace glint {
@@ -67,9 +67,9 @@ public:
     // The tile's sums, row by row; zeros when it has none of this generation.
     void copy_out(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums) const;
     // Takes the sums, and leaves a vector without meaning whose memory can be used again. doublings: those between the samples
-    // that the tile had and `samples`.
+    // that the tile had and `samples`; rays: cast for them.
     void write_back(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums, int samples,
-                    const Doublings& doublings = {});
+                    const Doublings& doublings = {}, std::uint64_t rays = 0);
     // One colour per preview block of the tile, row by row.
     void write_preview(std::size_t tile, std::uint64_t generation, const std::vector<glm::vec3>& blocks);
 
@@ -81,6 +81,9 @@ public:
     [[nodiscard]] int resolve_pass(std::uint64_t generation, Image& image) const;
     // The tiles' doublings, summed in order; `samples` is how many each pixel has at least.
     [[nodiscard]] Doublings doublings(std::uint64_t generation, int samples) const;
+    // What adaptive sampling goes by, and the tiles apart by the powers of two that their samples have reached.
+    [[nodiscard]] std::vector<TileState> states(std::uint64_t generation) const;
+    [[nodiscard]] std::vector<Stratum> strata(std::uint64_t generation) const;
 
 private:
     struct Tile {
@@ -89,6 +92,7 @@ private:
         int samples = 0, previous_samples = 0;
         std::vector<PixelSum> sums, previous;  // previous: before the last batch
         std::vector<Doubling> doublings;
+        std::uint64_t rays = 0;
         std::vector<glm::vec3> preview;
     };
     TileRect area_;

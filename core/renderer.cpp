@@ -120,6 +120,7 @@ Progress Renderer::progress() const {
     p.spp_min = s.least_samples_so_far();
     for (std::size_t i = 0; i < s.framebuffer->tile_count(); ++i)
         p.spp_max = std::max(p.spp_max, s.framebuffer->samples(i, p.generation));
+    p.spp = s.samples_so_far();
     if (!s.preview) p.preview_complete = p.spp_min > 0;
     return p;
 }
@@ -130,11 +131,16 @@ ErrorEstimate Renderer::error() const {
     ErrorEstimate e;
     if (s.order == nullptr || s.queue_generation != s.order->generation || s.failed()) return e;
     const std::shared_ptr<const Order> order = s.order;
-    const int samples = s.least_samples_so_far();
+    const int samples = s.samples_so_far();
     if (!order->plan.stochastic()) {
         if (samples > 0) e.kind = ErrorEstimate::Kind::exact;
         e.spp = samples;
         return e;
+    }
+    if (s.adaptive()) {
+        const std::vector<Stratum> strata = s.framebuffer->strata(order->generation);
+        lock.unlock();
+        return estimate_error(strata, samples, {order->plan.sampler, order->plan.one_square()});
     }
     const Doublings doublings = s.framebuffer->doublings(order->generation, samples);
     const std::size_t pixels = s.framebuffer->area().pixels();

@@ -26,7 +26,7 @@ struct Frame {
     int width = 0, height = 0;
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // x1 = y1 = 0: the whole picture
     int spp = 64;                        // samples a pixel; the workers idle when they are reached. Where nothing is
-                                         // random they are all alike, and one is taken
+                                         // random they are all alike, and one is taken. Where they are adaptive: the mean
 };
 
 struct Progress {
@@ -35,6 +35,7 @@ struct Progress {
     bool finished = false;          // every pixel has its samples
     bool out_of_memory = false;     // the picture is too large: this frame never finishes, a later one may
     int spp_min = 0, spp_max = 0;   // samples a pixel so far
+    int spp = 0;                    // the picture's: the least or, where they are adaptive, the mean
     double seconds = 0.0;           // since restart(), pauses excluded; stands still when finished
     RayCounts rays;                 // and the samples and branches that were dropped
 };

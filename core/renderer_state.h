@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <mutex>
 
+#include "core/adaptive.h"
 #include "core/camera.h"
 #include "core/framebuffer.h"
 #include "core/render_plan.h"
@@ -35,6 +36,7 @@ struct Renderer::State {
     std::shared_ptr<Framebuffer> framebuffer;
     TileQueue queue;
     std::uint64_t queue_generation = 0;
+    std::vector<int> goals;  // samples that each tile is on its way to
     std::size_t previews_left = 0, tiles_left = 0;
     bool paused = false, stopping = false;
     std::uint64_t failed_generation = 0;  // of the frame that memory did not suffice for
@@ -70,6 +72,14 @@ struct Renderer::State {
         return least;
     }
 
+    // Samples that the picture counts for.
+    [[nodiscard]] int samples_so_far() const {
+        if (!adaptive()) return least_samples_so_far();
+        return finished() ? order->frame.spp
+                          : static_cast<int>(counts.camera / static_cast<std::uint64_t>(framebuffer->area().pixels()));
+    }
+    [[nodiscard]] bool adaptive() const { return order->frame.settings.adaptive && order->plan.stochastic(); }
+
     // The first worker to look at a new order deals its tiles out; restart() itself stays O(1).
     void deal();
     // A worker's life: all of it but for frames that are too large.
@@ -78,8 +88,11 @@ struct Renderer::State {
     void work_loop(std::uint64_t& current);
     // The frame can never be finished; the next one may be smaller.
     void give_up(std::uint64_t generation_given_up);
-    // Puts every tile back that has fewer samples than the order wants and that nobody has. `before`: what it wanted so far.
+    // The order wants more samples than `before`: puts tiles back that have fewer and that nobody has.
     void take_up_again(int before);
+    // When all tiles have reached their goals: sets new ones where samples are adaptive and the order wants more. False:
+    // finished.
+    bool deal_again();
 };
 
 }  // namespace glint

@@ -21,6 +21,7 @@ void Renderer::State::deal() {
     if (framebuffer == nullptr || framebuffer->area() != area) framebuffer = std::make_shared<Framebuffer>(area, preview);
     const std::size_t n = framebuffer->tile_count();
     queue.deal(n, preview);
+    goals.assign(n, adaptive() ? std::min(f.spp, kUniformSamples) : f.spp);
     previews_left = preview ? n : 0;
     tiles_left = n;
     queue_generation = order->generation;
@@ -51,12 +52,29 @@ void Renderer::State::give_up(std::uint64_t generation_given_up) {
 
 void Renderer::State::take_up_again(int before) {
     if (queue_generation != order->generation || failed()) return;
+    if (adaptive()) {
+        if (tiles_left == 0) deal_again();
+        return;
+    }
+    goals.assign(goals.size(), order->frame.spp);
     for (std::size_t i = 0; i < framebuffer->tile_count(); ++i) {
         // A tile with fewer is in the queue, or a worker has it, who will look at the order again when done.
         if (framebuffer->samples(i, order->generation) != before) continue;
         queue.give_back({i, false, before});
         ++tiles_left;
     }
+}
+
+bool Renderer::State::deal_again() {
+    if (!adaptive()) return false;
+    const std::vector<std::size_t> next = tiles_to_double(framebuffer->states(order->generation), order->frame.spp);
+    for (const std::size_t tile : next) {
+        const int samples = framebuffer->samples(tile, order->generation);
+        goals[tile] = doubled(samples);
+        queue.give_back({tile, false, samples});
+    }
+    tiles_left = next.size();
+    return tiles_left > 0;
 }
 
 void Renderer::State::work_loop(std::uint64_t& current) {
@@ -77,7 +95,7 @@ void Renderer::State::work_loop(std::uint64_t& current) {
         TileTask task = queue.take();
         const std::shared_ptr<const Order> o = order;
         const int first = task.samples;
-        const int last = std::min(o->frame.spp, first + std::clamp(preview ? first : 7 * first, 1, kMaxBatch));
+        const int last = std::min(goals[task.tile], first + std::clamp(preview ? first : 7 * first, 1, kMaxBatch));
         const TileRect rect = framebuffer->tile_rect(task.tile);
         if (!task.preview) framebuffer->copy_out(task.tile, o->generation, sums);
         lock.unlock();
@@ -96,12 +114,16 @@ void Renderer::State::work_loop(std::uint64_t& current) {
             continue;
         }
         counts += workspace.counts;
-        framebuffer->write_back(task.tile, o->generation, sums, last, workspace.doublings);
-        if (last < order->frame.spp) {
+        framebuffer->write_back(task.tile, o->generation, sums, last, workspace.doublings, workspace.counts.total());
+        if (last < goals[task.tile]) {
             task.samples = last;
             queue.give_back(task);
             if (queue.size() == 1) work.notify_one();
         } else if (--tiles_left == 0) {
+            if (deal_again()) {
+                work.notify_all();
+                continue;
+            }
             run_clock(false);
             change.notify_all();
         }

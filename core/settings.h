@@ -50,6 +50,8 @@ struct RenderSettings {
     int light_samples = 1;  // points on each area light at every vertex
     GlassBranches glass = GlassBranches::both;
     std::uint64_t seed = 0;
+    // Samples go where they take most error away, see adaptive.h; their number is then the mean over pixels.
+    bool adaptive = false;
     std::optional<float> light_size;  // half side of the square put around point lights, scene units
     std::optional<float> roughness;   // fuzz radius of every mirror
 

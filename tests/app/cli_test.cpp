@@ -210,11 +210,25 @@ TEST_F(CommandLine, SignalsSaveWhatWasRendered) {
     }
 }
 
+TEST_F(CommandLine, AdaptiveSamplesStopAtTheErrorThatWasAskedFor) {
+    const std::string words = "render builtin:dof --resolution 128x96 --quiet --stats json --noise 0.02 -o x.pfm";
+    const nlohmann::json even = nlohmann::json::parse(glint(words).out);
+    const nlohmann::json adaptive = nlohmann::json::parse(glint(words + " --adaptive").out);
+    for (const nlohmann::json& stats : {even, adaptive}) {
+        EXPECT_EQ(stats["stopped_by"], "noise");
+        EXPECT_LE(stats["error"]["relrmse"], 0.02);
+    }
+    EXPECT_TRUE(adaptive["adaptive"]);
+    EXPECT_LT(adaptive["spp_min"], adaptive["spp_max"]);
+    EXPECT_LE(adaptive["rays"]["camera"], even["rays"]["camera"]);
+    EXPECT_EQ(glint("render builtin:dof --adaptive --sampler regular -o x.png").code, 2);
+}
+
 TEST_F(CommandLine, HelpVersionListAndInfoGoToStdout) {
     const Outcome help = glint("render --help");
     EXPECT_EQ(help.code, 0);
     for (const char* option : {"--resolution", "--spp", "--features", "--accel", "--isa", "--crop", "--stats", "--hdri-file",
-                               "--camera-view-up", "--preset", "--noise", "--convergence"}) {
+                               "--camera-view-up", "--preset", "--noise", "--convergence", "--adaptive"}) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     }
     // What is not built yet is not promised.

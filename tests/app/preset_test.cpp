@@ -18,10 +18,13 @@ TEST(Preset, SetsSamplesDepthAndCutoff) {
     EXPECT_EQ(parsed({"--preset", "good"}).settings.cutoff, 0.01f);
     EXPECT_EQ(parsed({"--preset", "good"}).settings.sampler, SamplerKind::joint);
     EXPECT_EQ(parsed({"--preset", "good", "--sampler", "random"}).settings.sampler, SamplerKind::random);
+    EXPECT_TRUE(parsed({"--preset", "good"}).settings.adaptive);
+    EXPECT_FALSE(parsed({"--preset", "good", "--no-adaptive"}).settings.adaptive);
     const Options reference = parsed({"--preset", "reference"});
     EXPECT_EQ(reference.spp, 1024);
     EXPECT_EQ(reference.settings.depth, 16);
-    EXPECT_EQ(reference.settings.cutoff, 0.0f);  // biased settings are never part of a reference
+    EXPECT_EQ(reference.settings.cutoff, 0.0f);  // settings that could be biased are never part of a reference
+    EXPECT_FALSE(reference.settings.adaptive);
     EXPECT_EQ(parsed({}).settings, RenderSettings());
 }
 

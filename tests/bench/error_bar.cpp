@@ -22,6 +22,7 @@ struct Setup {
         "builtin:glass",         "builtin:knot,n=10000",  "builtin:stadium,n=10000", "builtin:soup,n=1000", "builtin:crowd,n=20"};
     std::vector<std::string> samplers{"sobol", "joint", "jittered", "random"};
     int width = 64, height = 48, seeds = 20, most = 256, threads = 2, truth = 64;
+    bool adaptive = false;
 };
 
 Frame frame_of(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const AnyAccelerator>& accelerator,
@@ -33,6 +34,7 @@ Frame frame_of(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<
     frame.settings.features = features_of(*scene);
     frame.settings.sampler = sampler;
     frame.settings.seed = seed;
+    frame.settings.adaptive = setup.adaptive;
     frame.width = setup.width;
     frame.height = setup.height;
     frame.spp = 1;
@@ -133,6 +135,7 @@ void measure(const Setup& setup) {
         Image truth;
         Frame frame = frame_of(scene, accelerator, setup, SamplerKind::joint, 0x7275746874);
         frame.spp = setup.truth * setup.most;
+        frame.settings.adaptive = false;
         renderer.restart(frame);
         renderer.wait(1e9, nullptr);
         renderer.resolve(truth);
@@ -174,6 +177,7 @@ int main(int argc, char** argv) {
     app.add_option("--seeds", setup.seeds);
     app.add_option("--spp", setup.most, "most samples a pixel, a power of two");
     app.add_option("--truth", setup.truth, "times as many samples for the truth");
+    app.add_flag("--adaptive", setup.adaptive, "samples are the mean over pixels");
     app.add_option("--threads", setup.threads);
     CLI11_PARSE(app, argc, argv);
     glint::bench::measure(setup);

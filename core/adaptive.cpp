@@ -1,0 +1,98 @@
+#include "core/adaptive.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace glint {
+namespace {
+
+// By what the error's decrease shrinks from one doubling to the next, see error_estimate.cpp.
+constexpr double kRatio = 0.4;
+// Samples given out between two looks at the tiles, as a part of all so far: few would leave threads without work, many would
+// decide by what is known no longer.
+constexpr std::uint64_t kLooks = 4;
+
+std::uint64_t cost(const TileState& t) { return static_cast<std::uint64_t>(doubled(t.samples) - t.samples) * t.pixels; }
+
+// Error that the next doubling takes away for each ray, up to a factor that is the same for all. Two changes tell more than one,
+// which may be small by chance.
+double promise(const TileState& t) {
+    const auto samples = static_cast<double>(t.samples) * static_cast<double>(t.pixels);
+    return (t.change + kRatio * t.change_before) / (samples + static_cast<double>(t.rays));
+}
+
+// As many of `order` as there is room for, up to `most` samples.
+std::vector<std::size_t> taken(std::span<const TileState> tiles, const std::vector<std::size_t>& order, std::uint64_t room,
+                               std::uint64_t most) {
+    std::vector<std::size_t> out;
+    std::uint64_t sum = 0;
+    for (const std::size_t i : order) {
+        if (sum >= most) break;
+        const std::uint64_t c = cost(tiles[i]);
+        if (sum + c > room) continue;
+        sum += c;
+        out.push_back(i);
+    }
+    return out;
+}
+
+}  // namespace
+
+int doubled(int samples) { return 2 * static_cast<int>(std::bit_floor(static_cast<unsigned>(samples))); }
+
+std::vector<std::size_t> tiles_to_double(std::span<const TileState> tiles, int spp) {
+    std::uint64_t pixels = 0, samples = 0;
+    for (const TileState& t : tiles) {
+        pixels += t.pixels;
+        samples += static_cast<std::uint64_t>(t.samples) * t.pixels;
+    }
+    std::vector<std::size_t> behind, order;
+    std::vector<double> promised(tiles.size());
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+        const auto n = static_cast<std::uint64_t>(tiles[i].samples);
+        promised[i] = promise(tiles[i]);
+        (n < kUniformSamples || n * kMostBehind * pixels <= samples ? behind : order).push_back(i);
+    }
+    std::stable_sort(behind.begin(), behind.end(),
+                     [&](std::size_t a, std::size_t b) { return tiles[a].samples < tiles[b].samples; });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return promised[a] > promised[b]; });
+    const std::uint64_t last = static_cast<std::uint64_t>(spp) * pixels;
+    for (std::uint64_t stop = pixels; samples < last; stop *= 2) {
+        if (stop <= samples && stop < last) continue;
+        const std::uint64_t room = std::min(stop, last) - samples;
+        std::vector<std::size_t> out = taken(tiles, behind, room, room);
+        if (out.empty()) out = taken(tiles, order, room, std::max<std::uint64_t>(1, samples / kLooks));
+        if (!out.empty() || stop >= last) return out;
+    }
+    return {};
+}
+
+ErrorEstimate estimate_error(std::span<const Stratum> strata, int spp, Randomness random) {
+    ErrorEstimate all;
+    all.spp = spp;
+    double pixels = 0.0, relmse = 0.0, low = 0.0, high = 0.0, cautious = 0.0, slope = 0.0, slow = 0.0;
+    for (const Stratum& s : strata) {
+        const ErrorEstimate e = estimate_error(s.doublings, s.pixels, s.spp, random);
+        if (e.kind == ErrorEstimate::Kind::unknown) return all;
+        const auto n = static_cast<double>(s.pixels);
+        const double part = n * e.relrmse * e.relrmse;
+        pixels += n;
+        relmse += part;
+        low += n * e.low * e.low;
+        high += n * e.high * e.high;
+        cautious += n * e.cautious * e.cautious;
+        slope += part * e.slope;
+        slow += part * e.slow;
+    }
+    if (!(pixels > 0.0)) return all;
+    all.kind = ErrorEstimate::Kind::estimated;
+    all.relrmse = std::sqrt(relmse / pixels);
+    all.low = std::sqrt(low / pixels);
+    all.high = std::sqrt(high / pixels);
+    all.cautious = std::sqrt(cautious / pixels);
+    if (relmse > 0.0) all.slope = slope / relmse, all.slow = slow / relmse;
+    return all;
+}
+
+}  // namespace glint
