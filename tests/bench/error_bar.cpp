@@ -21,7 +21,7 @@ struct Setup {
         "builtin:balls,level=2", "builtin:mount,level=4", "builtin:balls_box",       "builtin:dof",         "builtin:cornell",
         "builtin:glass",         "builtin:knot,n=10000",  "builtin:stadium,n=10000", "builtin:soup,n=1000", "builtin:crowd,n=20"};
     std::vector<std::string> samplers{"sobol", "joint", "jittered", "random"};
-    int width = 64, height = 48, seeds = 20, most = 256, threads = 2, truth = 64;
+    int width = 128, height = 96, seeds = 8, most = 256, threads = 2, truth = 16;
     bool adaptive = false;
 };
 
