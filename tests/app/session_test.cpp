@@ -2,67 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/app/session_fixture.h"
+
 namespace glint {
 namespace {
-
-// A ball of the given material under a point light.
-std::shared_ptr<const Scene> ball(const Material& material, bool light = true) {
-    SceneBuilder builder;
-    builder.add(Sphere{{0, 0, 0}, 1.0f}, builder.add_material(material));
-    builder.scene().name = "some/folder/ball.p3f";
-    builder.scene().cameras.push_back(CameraPose{});
-    if (light) builder.scene().lights.push_back(Light{});
-    return builder.finish();
-}
-
-Material mirror(float mirror) {
-    Material m;
-    m.mirror = glm::vec3(mirror);
-    return m;
-}
-
-Material glass() {
-    Material m;
-    m.glass = true;
-    m.ior = 1.5f;
-    return m;
-}
-
-// Accelerators that are ready when the test says so.
-struct Builds {
-    std::shared_ptr<const Scene> scene;
-    std::array<std::shared_ptr<const AnyAccelerator>, 3> ready;
-    std::array<bool, 3> failed{};
-
-    void finish(AcceleratorKind kind) { ready[static_cast<std::size_t>(kind)] = build_accelerator(kind, scene->geometry); }
-    AcceleratorSource source() {
-        return {AcceleratorKind::bvh, [this](AcceleratorKind k) { return ready[static_cast<std::size_t>(k)]; },
-                [this](AcceleratorKind k) { return failed[static_cast<std::size_t>(k)]; }};
-    }
-};
-
-class SessionTest : public testing::Test {
-protected:
-    SessionTest() { use(ball(mirror(0.5f))); }
-
-    void use(std::shared_ptr<const Scene> scene) {
-        builds.scene = scene;
-        for (const auto kind : {AcceleratorKind::none, AcceleratorKind::grid, AcceleratorKind::bvh}) builds.finish(kind);
-        Choices choices;
-        choices.settings.features = features_of(*scene);
-        session = std::make_unique<Session>(scene, choices, scene->cameras[0], builds.source());
-        session->resize(64, 48);
-    }
-    // What the screen shows once the submitted frame has its preview.
-    static Progress preview() {
-        Progress p;
-        p.preview_complete = true;
-        return p;
-    }
-
-    Builds builds;
-    std::unique_ptr<Session> session;
-};
 
 TEST_F(SessionTest, FirstFrameCarriesWhatIsWanted) {
     const auto frame = session->next_frame({});
@@ -274,39 +217,6 @@ TEST_F(SessionTest, PausedWorkersStillMakeThePreviewOfAChange) {
     EXPECT_TRUE(session->resting(preview()));
     session->apply(Action::pause);
     EXPECT_FALSE(session->resting(preview()));
-}
-
-TEST_F(SessionTest, TitleTellsTheErrorAndWhenTheNextTargetIsReached) {
-    const std::optional<Frame> frame = session->next_frame({});
-    ASSERT_TRUE(frame);
-    ErrorEstimate e;
-    e.kind = ErrorEstimate::Kind::estimated;
-    e.spp = 64, e.relrmse = 0.04, e.low = 0.036, e.high = 0.044, e.cautious = 0.05, e.slope = 1.0;
-    // Ten seconds for 64 samples of every pixel; a target of 0.02 takes 2.5 times as many, at the next doubling.
-    Progress p{.spp_min = 64, .seconds = 10.0, .rays = {}};
-    p.rays.camera = 64ull * static_cast<unsigned>(frame->width * frame->height);
-    const std::string title = session->title(p, e);
-    EXPECT_NE(title.find("relRMSE 0.0400 \u00b1 0.0040, 0.02 in 30 s"), std::string::npos) << title;
-    EXPECT_EQ(session->title(p).find("relRMSE"), std::string::npos);
-}
-
-TEST_F(SessionTest, TitleNamesSceneAcceleratorSamplesSpeedAndFeatures) {
-    ASSERT_TRUE(session->next_frame({}));
-    Progress p{.spp_min = 37, .seconds = 2.0, .rays = {}};
-    p.rays.camera = 10'200'000;
-    const std::string title = session->title(p);
-    for (const char* part :
-         {"glint \u2014 ball.p3f \u2014 bvh \u2014 37 spp \u2014 5.1 Mrays/s \u2014 aa", "shadows", "reflections"})
-        EXPECT_NE(title.find(part), std::string::npos) << title;
-    EXPECT_EQ(title.find("dof"), std::string::npos) << title;
-    EXPECT_EQ(title.find("converged"), std::string::npos) << title;
-    p.finished = true;
-    session->apply(Action::toggle_dof);
-    EXPECT_NE(session->title(p).find("dof"), std::string::npos);
-    EXPECT_NE(session->title(p).find("converged"), std::string::npos);
-    session->apply(Action::pause);
-    p.finished = false;
-    EXPECT_NE(session->title(p).find("paused"), std::string::npos);
 }
 
 }  // namespace
