@@ -15,12 +15,9 @@ constexpr std::uint64_t kLooks = 4;
 
 std::uint64_t cost(const TileState& t) { return static_cast<std::uint64_t>(doubled(t.samples) - t.samples) * t.pixels; }
 
-// Error that the next doubling takes away for each ray, up to a factor that is the same for all. Two changes tell more than one,
+// Error that the next doubling takes away for its work, up to a factor that is the same for all. Two changes tell more than one,
 // which may be small by chance.
-double promise(const TileState& t) {
-    const auto samples = static_cast<double>(t.samples) * static_cast<double>(t.pixels);
-    return (t.change + kRatio * t.change_before) / (samples + static_cast<double>(t.rays));
-}
+double promise(const TileState& t) { return (t.change + kRatio * t.change_before) / static_cast<double>(t.work); }
 
 // As many of `order` as there is room for, up to `most` samples.
 std::vector<std::size_t> taken(std::span<const TileState> tiles, const std::vector<std::size_t>& order, std::uint64_t room,

@@ -1,7 +1,7 @@
-// Adaptive sampling: which tiles have their samples doubled next, so that each ray takes as much of the picture's error away as
-// it can. Knows no renderer, pixel or thread. Invariant: decides by the tiles' own sums alone, and those by their samples, so the
-// map of samples is a function of the frame and of the mean that is asked for; on the way to a mean every smaller power of two is
-// passed.
+// Adaptive sampling: which tiles have their samples doubled next, so that each second takes as much of the picture's error away
+// as it can. Knows no renderer, pixel or thread. Invariant: decides by the tiles' own sums alone, and those by their samples, so
+// the map of samples is a function of the frame and of the mean that is asked for; on the way to a mean every smaller power of
+// two is passed.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ struct TileState {
     int samples = 0;  // a pixel
     std::size_t pixels = 0;
     double change = 0.0, change_before = 0.0;  // of the last two doublings, summed over pixels (Doubling::change)
-    std::uint64_t rays = 0;                    // cast so far
+    std::uint64_t work = 0;                    // RayCounts::work() so far
 };
 
 // Every tile takes so many before any is preferred, and later an eighth of the mean: what is rare has to have its chance, and two

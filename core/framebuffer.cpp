@@ -37,10 +37,10 @@ void Framebuffer::copy_out(std::size_t tile, std::uint64_t generation, std::vect
 }
 
 void Framebuffer::write_back(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums, int samples,
-                             const Doublings& doublings, std::uint64_t rays) {
+                             const Doublings& doublings, std::uint64_t work) {
     Tile& t = tiles_[tile];
-    if (t.generation != generation) t.doublings.clear(), t.rays = 0;
-    t.rays += rays;
+    if (t.generation != generation) t.doublings.clear(), t.work = 0;
+    t.work += work;
     t.doublings.resize(doublings_within(samples));
     for (std::size_t k = 0; k < t.doublings.size(); ++k) t.doublings[k] += doublings[k];
     if (keep_passes_) {
@@ -111,7 +111,7 @@ std::vector<TileState> Framebuffer::states(std::uint64_t generation) const {
             const std::size_t n = t.doublings.size();
             if (n > 0) s.change = t.doublings[n - 1].change;
             if (n > 1) s.change_before = t.doublings[n - 2].change;
-            s.rays = t.rays;
+            s.work = t.work;
         }
         states.push_back(s);
     }

@@ -67,9 +67,9 @@ public:
     // The tile's sums, row by row; zeros when it has none of this generation.
     void copy_out(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums) const;
     // Takes the sums, and leaves a vector without meaning whose memory can be used again. doublings: those between the samples
-    // that the tile had and `samples`; rays: cast for them.
+    // that the tile had and `samples`; work: RayCounts::work() for them.
     void write_back(std::size_t tile, std::uint64_t generation, std::vector<PixelSum>& sums, int samples,
-                    const Doublings& doublings = {}, std::uint64_t rays = 0);
+                    const Doublings& doublings = {}, std::uint64_t work = 0);
     // One colour per preview block of the tile, row by row.
     void write_preview(std::size_t tile, std::uint64_t generation, const std::vector<glm::vec3>& blocks);
 
@@ -92,7 +92,7 @@ private:
         int samples = 0, previous_samples = 0;
         std::vector<PixelSum> sums, previous;  // previous: before the last batch
         std::vector<Doubling> doublings;
-        std::uint64_t rays = 0;
+        std::uint64_t work = 0;
         std::vector<glm::vec3> preview;
     };
     TileRect area_;

@@ -114,7 +114,7 @@ void Renderer::State::work_loop(std::uint64_t& current) {
             continue;
         }
         counts += workspace.counts;
-        framebuffer->write_back(task.tile, o->generation, sums, last, workspace.doublings, workspace.counts.total());
+        framebuffer->write_back(task.tile, o->generation, sums, last, workspace.doublings, workspace.counts.work());
         if (last < goals[task.tile]) {
             task.samples = last;
             queue.give_back(task);

@@ -25,7 +25,7 @@ std::vector<TileState> tiles_at(int spp, const std::vector<double>& share) {
             t.samples = doubled(t.samples);
             t.change_before = t.change;
             t.change = share[i] / t.samples;
-            t.rays = static_cast<std::uint64_t>(t.samples) * t.pixels;
+            t.work = static_cast<std::uint64_t>(t.samples) * t.pixels;
         }
     }
     return tiles;
