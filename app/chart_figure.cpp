@@ -62,13 +62,16 @@ std::string axis(char name, const Axis& a, const Range& r, bool powers_of_two) {
     s += fmt::format("set {}label {} textcolor rgb '#010203'{}\n", name, gnuplot_text(a.label), offset);
     if (!a.places.empty()) {
         std::string names;
+        std::ptrdiff_t longest = 0;  // characters, which take about 0.0145 of the width each
         for (std::size_t i = 0; i < a.places.size(); ++i) {
+            longest = std::max(longest, std::ranges::count_if(a.places[i], [](char c) { return (c & 0xc0) != 0x80; }));
             names += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_text(a.places[i]), i + 1);
         }
         return s + fmt::format(
                        "set {}range [{:.9g}:{:.9g}]\nset {}tics nomirror textcolor rgb '#010203' ({})\nset lmargin at "
-                       "screen 0.29\n",
-                       name, static_cast<double>(a.places.size()) + 0.6, 0.4, name, names);
+                       "screen {:.4g}\n",
+                       name, static_cast<double>(a.places.size()) + 0.6, 0.4, name, names,
+                       std::max(0.125, 0.0145 * static_cast<double>(longest) + 0.01));
     }
     if (!a.logarithmic) return s + fmt::format("set {}tics nomirror textcolor rgb '#010203'\n", name);
     s += fmt::format("set logscale {}\n", name);
