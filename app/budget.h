@@ -1,6 +1,6 @@
 // When a render ends: samples, seconds or error, whichever is reached first; and what is written down at each doubling.
 // Knows no files and no options. Invariant: by samples and error alone the picture is the same for any number of threads, since
-// both are looked at only when every pixel has the same number of samples.
+// both are looked at only when the picture has all the samples asked for.
 #pragma once
 
 #include <atomic>
@@ -22,7 +22,7 @@ struct Budget {
 struct BudgetWatch {
     // A few times a second.
     std::function<void(const Progress&)> at_beat;
-    // Whenever every pixel has the same number of samples: at the end, and at the doublings on the way where the budget has any.
+    // Whenever the picture has all the samples asked for: at the end, and at the doublings on the way where the budget has any.
     std::function<void(const Progress&, const ErrorEstimate&)> at_step;
 };
 

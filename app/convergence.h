@@ -1,5 +1,5 @@
 // The table of `render --convergence`: a row per doubling of the samples, as comma-separated values.
-// Knows no budget: whoever renders says when every pixel has the same number of samples.
+// Knows no budget: whoever renders says when the picture has all the samples asked for.
 #pragma once
 
 #include <string>

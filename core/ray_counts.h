@@ -14,7 +14,7 @@ struct RayCounts {
     double weight_cut_weight = 0.0;
 
     [[nodiscard]] std::uint64_t total() const { return camera + shadow + reflection + refraction; }
-    // About how long they take, in camera rays: those after a bounce go every way, and so do the shadow rays behind them.
+    // About how long they take, in shadow rays: a camera ray brings its sample's sums, those after a bounce go every way.
     [[nodiscard]] std::uint64_t work() const { return 2 * camera + shadow + 2 * (reflection + refraction); }
     RayCounts& operator+=(const RayCounts& o) {
         camera += o.camera;

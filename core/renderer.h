@@ -66,7 +66,8 @@ public:
     // The last pass that covers the whole picture, every pixel with the same number of samples: what a screenshot takes.
     // Returns that number; 0, and `image` untouched, while there is none. Only with a preview.
     int resolve_pass(Image& image) const;
-    // How far the picture is from its limit, for the number of samples that every pixel has at least.
+    // How far the picture is from its limit, for the number of samples that every pixel has at least; where
+    // they are adaptive, for those that each tile has.
     [[nodiscard]] ErrorEstimate error() const;
     // Waits until finished, out of memory or until `deadline` seconds of rendering passed or *stop is true (stop may be null).
     void wait(double deadline_seconds, const std::atomic<bool>* stop) const;

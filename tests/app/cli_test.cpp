@@ -211,7 +211,7 @@ TEST_F(CommandLine, SignalsSaveWhatWasRendered) {
 }
 
 TEST_F(CommandLine, AdaptiveSamplesStopAtTheErrorThatWasAskedFor) {
-    const std::string words = "render builtin:dof --resolution 128x96 --quiet --stats json --noise 0.02 -o x.pfm";
+    const std::string words = "render builtin:dof --resolution 128x96 --quiet --stats json --noise 0.02 -o " + path("x.pfm");
     const nlohmann::json even = nlohmann::json::parse(glint(words).out);
     const nlohmann::json adaptive = nlohmann::json::parse(glint(words + " --adaptive").out);
     for (const nlohmann::json& stats : {even, adaptive}) {
