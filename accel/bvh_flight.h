@@ -44,11 +44,11 @@ template <bool any>
 inline void step_node(const BvhView& bvh, Flight& f) noexcept {
     const BvhNode& node = bvh.at<BvhNode>(f.at);
     Float8 near;
-    const unsigned mask = enter(node, SlabRay(f.scalars), Float8::set(f.best.t), near);
+    const Float8::Mask entered = enter(node, SlabRay(f.scalars), Float8::set(f.best.t), near);
     if constexpr (any) {
-        push_all_unsorted(f.stack, f.top, node, mask);
+        push_all_unsorted(f.stack, f.top, node, entered.bits());
     } else {
-        push_all(f.stack, f.top, node, mask, 3 * f.scalars.octant, near);
+        push_all(f.stack, f.top, node, entered, 3 * f.scalars.octant, near);
     }
     f.pop<any>();
 }

@@ -40,7 +40,7 @@ inline void traverse_frustum(const BvhView& bvh, Group* groups, const Span* span
             for (unsigned m = mask; m != 0; m &= m - 1) fetch(bvh, node.child[__builtin_ctz(m)]);
             if (mask != 0) {
                 at = (mask & (mask - 1)) == 0 ? node.child[__builtin_ctz(mask)]
-                                              : push_children(stack, top, node, mask, 3 * octant, depth);
+                                              : push_children(stack, top, node, Float8::Mask::from_bits(mask), 3 * octant, depth);
                 continue;
             }
         } else if (static_cast<PrimitiveKind>(leaf_kind(at)) == PrimitiveKind::triangle) {

@@ -75,15 +75,15 @@ struct SlabRay {
     }
 };
 
-// Bits of the children that the ray may enter before `limit`, and where.
-inline unsigned enter(const BvhNode& node, const SlabRay& ray, Float8 limit, Float8& near) noexcept {
+// The children that the ray may enter before `limit`, and where.
+inline Float8::Mask enter(const BvhNode& node, const SlabRay& ray, Float8 limit, Float8& near) noexcept {
     Float8 n[3], f[3];
     for (int i = 0; i < 3; ++i) {
         n[i] = mul_sub(Float8::load(node.bounds[ray.near_row[i]]), ray.reciprocal[i], ray.near_offset[i]);
         f[i] = mul_sub(Float8::load(node.bounds[ray.near_row[i] ^ 1]), ray.reciprocal[i], ray.far_offset[i]);
     }
     near = max(max(n[0], n[1]), max(n[2], Float8::set(0.0f)));
-    return le(near, min(min(f[0], f[1]), min(f[2], limit))).bits();
+    return le(near, min(min(f[0], f[1]), min(f[2], limit)));
 }
 
 // Asks memory for a whole node or leaf.

@@ -35,51 +35,53 @@ inline __m256i front_lanes(unsigned set) noexcept {
 }
 #endif
 
-// Pushes all children of `mask`, none or many, far to near, and returns the place in the node's order of the nearest one.
-inline int push_all(TraversalStack& stack, int& top, const BvhNode& node, unsigned mask, unsigned shift, Float8 near) noexcept {
+// Pushes all children entered, none or many, far to near, and returns the place in the node's order of the nearest one.
+inline int push_all(TraversalStack& stack, int& top, const BvhNode& node, Float8::Mask entered, unsigned shift,
+                    Float8 near) noexcept {
 #if defined(__AVX512VL__)
     const __m256i order =
         _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(shift));
     const __m256 inf = _mm256_set1_ps(HUGE_VALF);
-    const __m256 sorted = _mm256_permutexvar_ps(order, _mm256_mask_blend_ps(static_cast<__mmask8>(mask), inf, near.v));
+    const __m256 sorted = _mm256_permutexvar_ps(order, _mm256_mask_blend_ps(static_cast<__mmask8>(entered.m), inf, near.v));
     const __m256i refs = _mm256_permutexvar_epi32(order, _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child)));
     const __mmask8 present = _mm256_cmp_ps_mask(sorted, inf, _CMP_LT_OQ);
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_maskz_compress_epi32(present, refs));
     _mm256_storeu_ps(stack.near + top, _mm256_maskz_compress_ps(present, sorted));
-    top += __builtin_popcount(mask);
+    top += __builtin_popcount(entered.m);
     return 31 - __builtin_clz(static_cast<unsigned>(present) | 1u);
 #elif defined(__AVX2__)
     const __m256i order =
         _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(shift));
-    const __m256 inf = _mm256_set1_ps(HUGE_VALF);
-    const __m256 sorted = _mm256_permutevar8x32_ps(_mm256_blendv_ps(inf, near.v, mask8_from_bits(mask)), order);
+    const __m256 sorted = _mm256_permutevar8x32_ps(near.v, order);
     const __m256i refs = _mm256_permutevar8x32_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.child)), order);
-    const auto present = static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(sorted, inf, _CMP_LT_OQ)));
+    // Sorted as lanes, not as bits: those would have to come back from the integer side.
+    const auto present = static_cast<unsigned>(_mm256_movemask_ps(_mm256_permutevar8x32_ps(entered.v, order)));
     const __m256i front = front_lanes(present);
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_permutevar8x32_epi32(refs, front));
     _mm256_storeu_ps(stack.near + top, _mm256_permutevar8x32_ps(sorted, front));
-    top += __builtin_popcount(mask);
+    top += __builtin_popcount(present);
     return 31 - __builtin_clz(present | 1u);
 #else
     alignas(32) float distance[kBvhWidth];
     near.store(distance);
+    const unsigned mask = entered.bits();
     int nearest = 0;
     for (int i = 0; i < kBvhWidth; ++i) {
         const unsigned k = node.order[i] >> shift & 7u;
-        const bool entered = (mask >> k & 1u) != 0;
+        const bool present = (mask >> k & 1u) != 0;
         stack.ref[top] = node.child[k];
         stack.near[top] = distance[k];
-        top += entered ? 1 : 0;
-        nearest = entered ? i : nearest;
+        top += present ? 1 : 0;
+        nearest = present ? i : nearest;
     }
     return nearest;
 #endif
 }
-// Pushes all but the nearest of the children of `mask` (at least one) and returns that one. It is looked up in the node, because
+// Pushes all but the nearest of the children entered (at least one) and returns that one. It is looked up in the node, because
 // what was just compressed and stored would come back from the stack too late.
-inline BvhRef push_children(TraversalStack& stack, int& top, const BvhNode& node, unsigned mask, unsigned shift,
+inline BvhRef push_children(TraversalStack& stack, int& top, const BvhNode& node, Float8::Mask entered, unsigned shift,
                             Float8 near) noexcept {
-    const int nearest = push_all(stack, top, node, mask, shift, near);
+    const int nearest = push_all(stack, top, node, entered, shift, near);
     --top;
     return node.child[node.order[nearest] >> shift & 7u];
 }
@@ -159,7 +161,8 @@ template <bool any, class Visit>
             visit(at);
             const BvhNode& node = bvh.node(at);
             Float8 near;
-            const unsigned mask = enter(node, slabs, limit, near);
+            const Float8::Mask entered = enter(node, slabs, limit, near);
+            const unsigned mask = entered.bits();
             if (mask == 0) {
                 do {
                     if (top == 0) return;
@@ -171,7 +174,7 @@ template <bool any, class Visit>
             } else if constexpr (any) {
                 at = push_unsorted(stack, top, node, mask);
             } else {
-                at = push_children(stack, top, node, mask, slabs.shift, near);
+                at = push_children(stack, top, node, entered, slabs.shift, near);
             }
         }
         visit(at);

@@ -71,7 +71,7 @@ void walk_from(const BvhView& boxes, BvhRef root, const BoxRay& ray, const float
             Float8 near;
             const unsigned mask = enter_children(node, ray, *limit, near);
             if (mask != 0) {
-                at = push_children(stack, top, node, mask, 3 * ray.octant, near);
+                at = push_children(stack, top, node, Float8::Mask::from_bits(mask), 3 * ray.octant, near);
                 continue;
             }
         } else {
