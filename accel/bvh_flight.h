@@ -11,8 +11,8 @@ namespace glint::GLINT_ISA {
 // Of 8, 12, 16, 24 and 32, 24 gives the most rays a second on meshes that do not fit the caches.
 constexpr int kInFlight = 24;
 
-// At the bottom of each stack; it looks like a leaf.
-constexpr BvhRef kDone = ~0u;
+// At the bottom of each stack: a leaf where the root is, so none.
+constexpr BvhRef kDone = kLeafBit;
 
 struct Flight {
     RayScalars scalars;
@@ -26,17 +26,9 @@ struct Flight {
     void start() noexcept {
         at = 0;
         stack.ref[0] = kDone;
-        stack.near[0] = -HUGE_VALF;
         top = 1;
     }
-    // Takes what is next from the stack. Without sorting there is nothing to compare.
-    template <bool any>
-    void pop() noexcept {
-        do {
-            --top;
-        } while (!any && stack.near[top] > best.t);
-        at = stack.ref[top];
-    }
+    void pop() noexcept { at = stack.ref[--top]; }
 };
 
 // Pushes all children entered, none or many alike, and pops one: no branch hangs on how many.
@@ -50,7 +42,7 @@ inline void step_node(const BvhView& bvh, Flight& f) noexcept {
     } else {
         push_all(f.stack, f.top, node, entered, 3 * f.scalars.octant, near);
     }
-    f.pop<any>();
+    f.pop();
 }
 
 // wanted(i): whether ray i is to be traced; begin(Flight&) sets what it has to beat; done(const Flight&) takes it back.
@@ -102,13 +94,16 @@ inline void traverse_in_flight(const BvhView& bvh, const RayBatch& rays, Wanted 
         for (int k = 0; k < at_leaves; ++k) {
             Flight* f = leaves[k];
             const PrimitiveId before = f->best.primitive;
-            if (f->at != kDone) meet_leaf<any>(f->at, LeafRay(f->ray, f->scalars, bvh), f->best);
+            const float t = f->best.t;
+            if (f->at != kDone) meet_leaf<any, false>(f->at, LeafRay(f->ray, f->scalars, bvh), f->best);
             if (f->at == kDone || (any && f->best.primitive != before)) {
                 done(*f);
                 start(*f);
                 continue;
             }
-            f->template pop<any>();
+            // Culled when hit, not compared when popped: that would be a branch guessed wrong at the end of each step's chain.
+            if (!any && f->best.t != t) f->top = f->stack.cull(f->top, f->best.t);
+            f->pop();
             go_on(f);
         }
     }

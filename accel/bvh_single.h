@@ -14,6 +14,17 @@ constexpr int kStackSize = kMaxBvhLevels * (kBvhWidth - 1) + 2 * kBvhWidth;
 struct TraversalStack {
     BvhRef ref[kStackSize];
     float near[kStackSize];
+
+    // Leaves out what lies behind t, all but the bottom one; returns how many entries are left.
+    int cull(int top, float t) noexcept {
+        int kept = 1;
+        for (int i = 1; i < top; ++i) {
+            ref[kept] = ref[i];
+            near[kept] = near[i];
+            kept += near[i] <= t ? 1 : 0;
+        }
+        return kept;
+    }
 };
 
 #if defined(__AVX2__) && !defined(__AVX512VL__)
