@@ -34,15 +34,16 @@ struct Flight {
 // Pushes all children entered, none or many alike, and pops one: no branch hangs on how many.
 template <bool any>
 inline void step_node(const BvhView& bvh, Flight& f) noexcept {
-    const BvhNode& node = bvh.at<BvhNode>(f.at);
+    const BvhNode& node = bvh.node(f.at);
     Float8 near;
     const Float8::Mask entered = enter(node, SlabRay(f.scalars), Float8::set(f.best.t), near);
+    int top = f.top;
     if constexpr (any) {
-        push_all_unsorted(f.stack, f.top, node, entered.bits());
+        push_all_unsorted(f.stack, top, node, entered.bits());
     } else {
-        push_all(f.stack, f.top, node, entered, 3 * f.scalars.octant, near);
+        push_all(f.stack, top, node, entered, f.scalars.shift, near);
     }
-    f.pop();
+    f.top = top;
 }
 
 // wanted(i): whether ray i is to be traced; begin(Flight&) sets what it has to beat; done(const Flight&) takes it back.
@@ -84,9 +85,10 @@ inline void traverse_in_flight(const BvhView& bvh, const RayBatch& rays, Wanted 
     while (node_count + leaf_count > 0) {
         const int at_nodes = node_count;
         node_count = 0;
+        for (int k = 0; k < at_nodes; ++k) step_node<any>(bvh, *nodes[k]);
         for (int k = 0; k < at_nodes; ++k) {
             Flight* f = nodes[k];
-            step_node<any>(bvh, *f);
+            f->pop();
             go_on(f);
         }
         const int at_leaves = leaf_count;

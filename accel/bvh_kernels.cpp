@@ -219,32 +219,12 @@ void occluded_coherent(const BvhView& bvh, const RayBatch& rays, bool* result) n
 
 void closest_batch(const BvhView& bvh, const RayBatch& rays, HitBatch& hits) noexcept {
     if (rays.order != RayOrder::divergent) return closest_coherent(bvh, rays, hits);
-    if (bvh.bytes > kCached) return closest_in_flight(bvh, rays, hits);
-    for_each_prepared(bvh, rays, [&](int i, const Ray& ray, const RayScalars& scalars) {
-        Hit best;
-        best.t = hits.t[i];
-        best.primitive = hits.primitive[i];
-        const PrimitiveId before = best.primitive;
-        traverse_closest(bvh, ray, scalars, best, [](BvhRef) {});
-        if (best.primitive == before) return;
-        hits.t[i] = best.t;
-        hits.u[i] = best.u;
-        hits.v[i] = best.v;
-        hits.primitive[i] = best.primitive;
-    });
+    closest_in_flight(bvh, rays, hits);
 }
 
 void occluded_batch(const BvhView& bvh, const RayBatch& rays, bool* result) noexcept {
     if (rays.order != RayOrder::divergent) return occluded_coherent(bvh, rays, result);
-    if (bvh.bytes > kCached) return occluded_in_flight(bvh, rays, result);
-    BvhRef blocker = 0;
-    for_each_prepared(bvh, rays, [&](int i, const Ray& ray, const RayScalars& scalars) {
-        if (result[i]) return;
-        Hit best;
-        best.t = ray.t_max;
-        traverse<true>(bvh, ray, scalars, best, blocker, [](BvhRef) {});
-        result[i] = best.primitive != kNoPrimitive;
-    });
+    occluded_in_flight(bvh, rays, result);
 }
 
 void count_closest(const BvhView& bvh, const Ray& ray, TraversalCounts& counts) noexcept {

@@ -1,4 +1,4 @@
-// prepare() for sixteen rays of a batch at once, one ray's share of it, and a walk over a batch by both.
+// prepare() for sixteen rays of a batch at once, and one ray's share of it.
 // Invariant: the values of prepare(), operation for operation.
 #pragma once
 
@@ -58,7 +58,8 @@ public:
         }
         const auto bit = [lane](unsigned bits) { return bits >> lane & 1u; };
         s.octant = bit(forward_[0]) | bit(forward_[1]) << 1 | bit(forward_[2]) << 2;
-        for (int i = 0; i < 3; ++i) s.near_row[i] = 2 * i + static_cast<int>(s.octant >> i & 1u ? 0 : 1);
+        s.shift = 3 * s.octant;
+        for (unsigned i = 0; i < 3; ++i) s.near_row[i] = (2 * i + ((s.octant >> i & 1u) ^ 1u)) * kRow;
         s.shear_x = shear_x_[lane];
         s.shear_y = shear_y_[lane];
         s.inverse_z = inverse_z_[lane];
@@ -87,21 +88,6 @@ inline void load(const RayBatch& rays, int i, Ray& ray) noexcept {
         (&ray.direction.x)[k] = rays.direction[k][i];
     }
     ray.t_max = rays.t_max[i];
-}
-
-// One ray after the other, made ready sixteen at a time.
-template <class Trace>
-void for_each_prepared(const BvhView& bvh, const RayBatch& rays, Trace trace) noexcept {
-    PreparedRays prepared;
-    for (int i = 0; i < rays.count; ++i) {
-        if (i % kGroup == 0) prepared.prepare(rays, i, bvh.magnitude);
-        if (!prepared.usable(i % kGroup)) continue;
-        Ray ray;
-        load(rays, i, ray);
-        RayScalars scalars;
-        prepared.share(i % kGroup, scalars);
-        trace(i, ray, scalars);
-    }
 }
 
 }  // namespace glint::GLINT_ISA

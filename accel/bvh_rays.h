@@ -10,14 +10,17 @@
 
 namespace glint::GLINT_ISA {
 
+constexpr std::uint32_t kRow = sizeof(BvhNode{}.bounds[0]);
+
 // What the tests derive from one ray; the same values as in PreparedRay. Three lanes of four are used.
 struct alignas(16) RayScalars {
     float reciprocal[4], near_offset[4], far_offset[4];
-    int near_row[4];  // of BvhNode::bounds, those that the ray meets first; last = first ^ 1
+    std::uint32_t near_row[4];  // of BvhNode::bounds, in bytes, those that the ray meets first; last = first ^ kRow
     float shear_x, shear_y, inverse_z;
     float o[3];  // the origin along kx, ky, kz
     int kx, ky, kz;
     unsigned octant;  // bit k set where direction[k] is not negative
+    unsigned shift;   // into BvhNode::order, 3 * octant
     bool usable;
 };
 
@@ -52,8 +55,10 @@ inline RayScalars prepare(const float* o, const float* d, float magnitude, float
     _mm_store_ps(s.near_offset, _mm_add_ps(shift, slack));
     _mm_store_ps(s.far_offset, _mm_sub_ps(shift, slack));
     s.octant = ~static_cast<unsigned>(_mm_movemask_ps(direction)) & 7u;
+    s.shift = 3 * s.octant;
     _mm_store_si128(reinterpret_cast<__m128i*>(s.near_row),
-                    _mm_sub_epi32(_mm_setr_epi32(0, 2, 4, 0), _mm_srai_epi32(_mm_castps_si128(direction), 31)));
+                    _mm_or_si128(_mm_setr_epi32(0, 2 * kRow, 4 * kRow, 0),
+                                 _mm_and_si128(_mm_srai_epi32(_mm_castps_si128(direction), 31), _mm_set1_epi32(kRow))));
     s.o[0] = o[s.kx];
     s.o[1] = o[s.ky];
     s.o[2] = o[s.kz];
@@ -62,10 +67,10 @@ inline RayScalars prepare(const float* o, const float* d, float magnitude, float
 
 struct SlabRay {
     Float8 reciprocal[3], near_offset[3], far_offset[3];
-    int near_row[3];
+    std::uint32_t near_row[3];
     unsigned shift;  // into BvhNode::order
 
-    explicit SlabRay(const RayScalars& s) noexcept : shift(3 * s.octant) {
+    explicit SlabRay(const RayScalars& s) noexcept : shift(s.shift) {
         for (int i = 0; i < 3; ++i) {
             reciprocal[i] = Float8::set(s.reciprocal[i]);
             near_offset[i] = Float8::set(s.near_offset[i]);
@@ -77,10 +82,13 @@ struct SlabRay {
 
 // The children that the ray may enter before `limit`, and where.
 inline Float8::Mask enter(const BvhNode& node, const SlabRay& ray, Float8 limit, Float8& near) noexcept {
+    const auto row = [&](std::uint32_t at) {
+        return Float8::load(reinterpret_cast<const float*>(reinterpret_cast<const char*>(node.bounds) + at));
+    };
     Float8 n[3], f[3];
     for (int i = 0; i < 3; ++i) {
-        n[i] = mul_sub(Float8::load(node.bounds[ray.near_row[i]]), ray.reciprocal[i], ray.near_offset[i]);
-        f[i] = mul_sub(Float8::load(node.bounds[ray.near_row[i] ^ 1]), ray.reciprocal[i], ray.far_offset[i]);
+        n[i] = mul_sub(row(ray.near_row[i]), ray.reciprocal[i], ray.near_offset[i]);
+        f[i] = mul_sub(row(ray.near_row[i] ^ kRow), ray.reciprocal[i], ray.far_offset[i]);
     }
     near = max(max(n[0], n[1]), max(n[2], Float8::set(0.0f)));
     return le(near, min(min(f[0], f[1]), min(f[2], limit)));
