@@ -8,7 +8,7 @@
 
 namespace glint::GLINT_ISA {
 
-// Of 8, 12, 16, 24 and 32, 24 gives the most rays a second on meshes that do not fit the caches.
+// 16 to 48 are within 4 % of each other on meshes that do not fit the caches.
 constexpr int kInFlight = 24;
 
 // At the bottom of each stack: a leaf where the root is, so none.

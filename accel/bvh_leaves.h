@@ -52,7 +52,7 @@ struct TriangleLanes {
 
 // `s` is sheared. Where no instruction fuses, every lane that plain products do not rule out is unsure.
 template <class V>
-inline TriangleLanes<V> meet_triangles(const Triangles<V>& s, V inverse_z) noexcept {
+[[gnu::always_inline]] inline TriangleLanes<V> meet_triangles(const Triangles<V>& s, V inverse_z) noexcept {
     const auto all = V::Mask::from_bits((1u << V::kLanes) - 1);
     const V zero = V::set(0.0f);
     TriangleLanes<V> r;
