@@ -31,7 +31,8 @@ struct Flight {
     void pop() noexcept { at = stack.ref[--top]; }
 };
 
-// Pushes all children entered, none or many alike, and pops one: no branch hangs on how many.
+// Pushes all children entered, none or many alike: no branch hangs on how many. What is next is popped when all rays have taken
+// their step, as it would come back late from what was just stored.
 template <bool any>
 inline void step_node(const BvhView& bvh, Flight& f) noexcept {
     const BvhNode& node = bvh.node(f.at);
