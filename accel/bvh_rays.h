@@ -10,6 +10,7 @@
 
 namespace glint::GLINT_ISA {
 
+// Bytes of a row of BvhNode::bounds.
 constexpr std::uint32_t kRow = sizeof(BvhNode{}.bounds[0]);
 
 // What the tests derive from one ray; the same values as in PreparedRay. Three lanes of four are used.
