@@ -16,7 +16,7 @@ namespace glint {
 struct TileState {
     int samples = 0;  // a pixel
     std::size_t pixels = 0;
-    double change = 0.0, change_before = 0.0;  // of the last two doublings, summed over pixels (Doubling::change)
+    double change = 0.0, change_before = 0.0;  // of the last two doublings, summed over pixels (Doubling::fresh)
     std::uint64_t work = 0;                    // RayCounts::work() so far
 };
 

@@ -25,18 +25,19 @@ constexpr double kUsualSpread = 0.2;
 // edges and smooth integrands.
 constexpr double kFast = 0.27;          // that part's ratio
 constexpr double kFirstSlow = 0.25;     // usual share of the 1/N part in the first change
-constexpr double kMostUsualSlow = 0.6;  // and the largest that counts as usual later
+constexpr double kMostUsualSlow = 0.5;  // and the largest that counts as usual later
 constexpr double kUsualSlowSpread = 0.3;
-constexpr double kModelError = 0.15;  // of a change, relative
+constexpr double kModelError = 0.15;  // of the newest change, relative; older ones follow the two powers less and less
+constexpr double kOlder = 1.5;
 // What the two powers leave out. In `joint` errors fall in steps, where samples fill the strata of four or six dimensions.
 constexpr double kSobolSteps = 0.12, kJointSteps = 0.4;
 constexpr std::size_t kPaddedWindow = 4;
 
 // The ratio drifts: as samples grow, the parts of a picture that converge slowly make up more of what is left.
 constexpr double kDrift = 0.07;
-// While a picture is noisy, changes are weighed by noisy means: E 1/I^2 is (1 + 3 v) / truth^2 for a relative variance v, and v
-// is one, two and four times the present one in the window.
-constexpr double kNoisyWeights = 7.0;
+// Changes are weighed by noisy means. By how much that misleads goes with the relative change of the pixels that make up most of
+// it (measured where all pixels are dark but for 4 or 6 % of their samples): shares of that, before and after the next doubling.
+constexpr double kFreshMisled = 0.6, kSettledMisled = 0.5;
 // Changes that are looked at. Two tell the ratio badly, four tell an old one.
 constexpr std::size_t kWindow = 3;
 
@@ -52,17 +53,25 @@ struct Level {
     double slow = 0.0, slope = 0.5;  // see ErrorEstimate
 };
 
-// The last changes, newest first, as means over pixels, and their relative variances. Pixels are independent, so the variance
-// of their sum is at most the sum of squares.
+// Of the changes after doubling `k`, the newest of all or one that has settled.
+const Changes& changes_of(std::span<const Doubling> doublings, std::size_t k) {
+    return k + 1 < doublings.size() ? doublings[k].settled : doublings[k].fresh;
+}
+
+// The last changes, newest first, as means over pixels, and their variances. Pixels are independent, so the variance of their sum
+// is at most the sum of squares.
 struct Window {
     std::array<double, std::max(kWindow, kPaddedWindow)> change{}, variance{};
     std::size_t size = 0;
 
     Window(std::span<const Doubling> doublings, std::size_t limit, double pixels) : size(std::min(limit, doublings.size())) {
         for (std::size_t i = 0; i < size; ++i) {
-            const Doubling& d = doublings[doublings.size() - 1 - i];
-            change[i] = d.change / pixels;
-            variance[i] = d.change2 / (pixels * pixels);
+            const std::size_t k = doublings.size() - 1 - i;
+            const Changes& c = changes_of(doublings, k);
+            const Changes& judge = doublings[i == 0 ? k : k + 1].fresh;
+            const double misled = (i == 0 ? kFreshMisled : kSettledMisled) * (judge.sum > 0.0 ? judge.squares / judge.sum : 0.0);
+            change[i] = c.sum / pixels;
+            variance[i] = c.squares / (pixels * pixels) + misled * misled * change[i] * change[i];
         }
     }
 };
@@ -94,7 +103,7 @@ Level extrapolate(const Window& w, double ratio, double told, double unsure) {
         if (told > 0.0) by_change += by_ratio * told * ((i + 1 < w.size ? 1.0 / newer : 0.0) - (i > 0 ? 1.0 / older : 0.0));
         variance += by_change * by_change * w.variance[i];
     }
-    out.spread = std::hypot(std::sqrt(variance), std::min(1.0, kNoisyWeights * out.mse));
+    out.spread = std::sqrt(variance);
     return out;
 }
 
@@ -138,9 +147,9 @@ Level padded(const Window& w, std::size_t known, double steps) {
     // Normal equations for the two parts of the newest change, in that unit.
     const double by_slow = (1.0 - usual) / kUsualSlowSpread, by_fast = -usual / kUsualSlowSpread;
     double ss = by_slow * by_slow, sf = by_slow * by_fast, ff = by_fast * by_fast, s = 0.0, f = 0.0;
-    double slower = 1.0, faster = 1.0;
-    for (std::size_t i = 0; i < w.size; ++i, slower /= 0.5, faster /= kFast) {
-        const double change = w.change[i] / unit, unsure = kModelError * std::max(change, 0.5 * slower);
+    double slower = 1.0, faster = 1.0, model = kModelError;
+    for (std::size_t i = 0; i < w.size; ++i, slower /= 0.5, faster /= kFast, model *= kOlder) {
+        const double change = w.change[i] / unit, unsure = model * std::max(change, 0.5 * slower);
         const double weight = 1.0 / (unsure * unsure + w.variance[i] / (unit * unit));
         ss += weight * slower * slower;
         sf += weight * slower * faster;
@@ -161,7 +170,7 @@ Level padded(const Window& w, std::size_t known, double steps) {
     out.slow = slow / mse;
     out.slope = 0.5 * out.slow - 0.5 * std::log2(kFast) * (1.0 - out.slow);
     out.ratio = 0.5 * out.slow + kFast * (1.0 - out.slow);
-    out.spread = std::hypot(std::sqrt(variance), std::min(1.0, kNoisyWeights * out.mse));
+    out.spread = std::sqrt(variance);
     return out;
 }
 
@@ -209,7 +218,7 @@ double between_doublings(std::span<const Doubling> doublings, double pixels, con
     const std::size_t top = doublings.size();
     mse[top] = level.mse;
     mse[top + 1] = level.mse * level.ratio;
-    for (std::size_t k = top; k-- > 0;) mse[k] = mse[k + 1] + doublings[k].change / pixels;
+    for (std::size_t k = top; k-- > 0;) mse[k] = mse[k + 1] + changes_of(doublings, k).sum / pixels;
     const auto n = static_cast<std::uint32_t>(spp);
     double sum = 0.0;
     std::uint32_t later = n;

@@ -109,8 +109,8 @@ std::vector<TileState> Framebuffer::states(std::uint64_t generation) const {
         TileState s{samples(i, generation), t.rect.pixels()};
         if (t.generation == generation) {
             const std::size_t n = t.doublings.size();
-            if (n > 0) s.change = t.doublings[n - 1].change;
-            if (n > 1) s.change_before = t.doublings[n - 2].change;
+            if (n > 0) s.change = t.doublings[n - 1].fresh.sum;
+            if (n > 1) s.change_before = t.doublings[n - 2].fresh.sum;
             s.work = t.work;
         }
         states.push_back(s);

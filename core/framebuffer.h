@@ -18,7 +18,8 @@ constexpr int kPreviewBlock = 8;  // pixels a side that share one ray of the coa
 
 struct PixelSum {
     glm::dvec3 radiance{0.0};
-    glm::dvec3 before{0.0};      // the mean at the last power of two
+    glm::vec3 before{0.0f};      // the mean at the last power of two
+    glm::vec3 change{0.0f};      // to it from the one before
     std::uint32_t taken = 0;     // samples
     std::uint32_t rejected = 0;  // of them left out of the sums because they were not finite
 
@@ -36,13 +37,13 @@ struct PixelSum {
 
 private:
     void note_doubling(Doublings& doublings) {
-        if (taken == 1) {
-            before = radiance;
-            return;
-        }
-        const glm::dvec3 now = mean();
-        doublings[static_cast<std::size_t>(std::countr_zero(taken)) - 1].add(relative_change(now, before));
+        const glm::vec3 now(mean()), last = now - before;
+        const glm::dvec3 squared = glm::dvec3(last) * glm::dvec3(last);
+        const auto k = static_cast<std::size_t>(std::countr_zero(taken));
+        if (k > 0) doublings[k - 1].fresh.add(relative_change(last, now, kHiddenFresh * squared));
+        if (k > 1) doublings[k - 2].settled.add(relative_change(change, now, kHiddenSettled * squared));
         before = now;
+        change = last;
     }
 };
 

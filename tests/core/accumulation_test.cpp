@@ -45,8 +45,8 @@ TEST(Accumulation, S_ACC_02_ASpreadOnAHighPedestal) {
         const Framebuffer framebuffer = one_pixel(n, [n](int i) { return 1e4f + static_cast<float>(2 * i >= n); });
         const Doublings doublings = framebuffer.doublings(1, n);
         const std::size_t last = doublings_within(n) - 1;
-        EXPECT_NEAR(doublings[last].change * (10000.5 * 10000.5 + 0.01), 0.25, 1e-6) << n;
-        for (std::size_t k = 0; k < last; ++k) EXPECT_EQ(doublings[k].change, 0.0) << n;
+        EXPECT_NEAR(doublings[last].fresh.sum * (10000.5 * 10000.5 + 0.01), 0.25, 1e-6) << n;
+        for (std::size_t k = 0; k < last; ++k) EXPECT_EQ(doublings[k].fresh.sum, 0.0) << n;
     }
     EXPECT_EQ(one_pixel(1, [](int) { return 1.0f; }).doublings(1, 1), Doublings{});
 }
@@ -138,13 +138,13 @@ TEST(Framebuffer, ATileOfAnOldGenerationCountsAsEmpty) {
     std::vector<PixelSum> sums(256);
     for (PixelSum& s : sums) s.radiance = glm::dvec3(6.0), s.taken = 2;
     Doublings doublings{};
-    doublings[0].add(0.5);
+    doublings[0].fresh.add(0.5);
     framebuffer.write_back(0, 7, sums, 2, doublings);
     EXPECT_EQ(framebuffer.samples(0, 7), 2);
     EXPECT_EQ(framebuffer.samples(0, 8), 0);
-    EXPECT_EQ(framebuffer.doublings(7, 2)[0].change, 0.5);
-    EXPECT_EQ(framebuffer.doublings(7, 1)[0].change, 0.0);
-    EXPECT_EQ(framebuffer.doublings(8, 2)[0].change, 0.0);
+    EXPECT_EQ(framebuffer.doublings(7, 2)[0].fresh.sum, 0.5);
+    EXPECT_EQ(framebuffer.doublings(7, 1)[0].fresh.sum, 0.0);
+    EXPECT_EQ(framebuffer.doublings(8, 2)[0].fresh.sum, 0.0);
     std::vector<PixelSum> copy;
     framebuffer.copy_out(0, 7, copy);
     EXPECT_EQ(copy[5].radiance.x, 6.0);

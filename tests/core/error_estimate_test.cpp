@@ -64,6 +64,12 @@ private:
     Doublings doublings_{};
 };
 
+// So many pixels that all changed by so much, whoever weighs it.
+Doubling changed(double change, double pixels = 1.0) {
+    const Changes all{pixels * change, pixels * change * change};
+    return {all, all};
+}
+
 std::string name_of(SamplerKind kind) { return std::string(kSamplerNames[static_cast<std::size_t>(kind)]); }
 
 // The plain variance of the samples is two to seven times too large here for all but `random`.
@@ -146,6 +152,48 @@ TEST(ErrorBar, S_ADP_01_RareLightIsNotLostByStopping) {
     }
 }
 
+// Light that 4 % of a pixel's square sees, of mean 1: one half of the samples sees it and the other does not, as long as there
+// are few. Weighed by the mean of twice the samples, changes are what the squared error falls by; at first sight they are not.
+TEST(ErrorBar, C_10_WeighsRareLightAgainAndSaysHowUnsureItIs) {
+    constexpr int kPixels = 8192, kTop = 8;
+    constexpr double kSide = 0.2;
+    for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::random}) {
+        std::vector<PixelSum> pixels(kPixels);
+        Doublings doublings{};
+        std::array<double, kTop + 1> mse{};
+        for (int k = 0; k <= kTop; ++k) {
+            for (std::uint32_t i = 0; i < kPixels; ++i) {
+                const glm::dvec2 low = (1.0 - kSide) * glm::dvec2(hash(i, 1) % 1000, hash(i, 2) % 1000) / 1000.0;
+                PixelSum& pixel = pixels[i];
+                while (pixel.taken < 1u << k) {
+                    const glm::dvec2 p = glm::dvec2(Sampler(kind, i, 5, pixel.taken, 1).square(dimension::pixel)) - low;
+                    const bool lit = p.x >= 0.0 && p.x < kSide && p.y >= 0.0 && p.y < kSide;
+                    const glm::vec3 c(lit ? static_cast<float>(1.0 / (kSide * kSide)) : 0.0f);
+                    pixel.add(&c, doublings);
+                }
+                const double e = pixel.mean().x - 1.0;
+                mse[static_cast<std::size_t>(k)] += e * e / 1.01 / kPixels;
+            }
+        }
+        for (int k = 3; k <= kTop; ++k) {
+            const auto n = static_cast<std::size_t>(k);
+            const auto known = std::span<const Doubling>(doublings).first(n);
+            const ErrorEstimate e = estimate_error(known, kPixels, 1 << k, {kind});
+            note(fmt::format("{}_{}", name_of(kind), 1 << k), e.relrmse / std::sqrt(mse[n]));
+            EXPECT_LE(e.low, std::sqrt(mse[n])) << name_of(kind) << ' ' << (1 << k);
+            if (k > 3) {
+                EXPECT_GE(e.high, std::sqrt(mse[n])) << name_of(kind) << ' ' << (1 << k);
+            }
+        }
+        // From 64 samples to 128.
+        const double fall = (mse[6] - mse[7]) * kPixels;
+        note(name_of(kind) + "_fresh", doublings[6].fresh.sum / fall);
+        note(name_of(kind) + "_settled", doublings[6].settled.sum / fall);
+        EXPECT_NEAR(doublings[6].settled.sum / fall, 1.0, 0.25) << name_of(kind);
+        EXPECT_GT(doublings[6].fresh.sum, doublings[6].settled.sum);
+    }
+}
+
 // Intervals that are looked at again and again cover less than they say; not so at doublings and with z = 2.
 TEST(ErrorBar, S_ADP_02_StreamsThatStopByTheirOwnErrorAreCovered) {
     constexpr double kHalf = 0.02;
@@ -179,7 +227,7 @@ TEST(ErrorBar, S_ADP_03_TwoHalvesThatAgreeAreNoProof) {
     }
     // The last two halves agree, those before did not.
     Doublings chance{};
-    for (std::size_t k = 0; k < 5; ++k) chance[k].add(0.01 * std::exp2(-static_cast<double>(k)));
+    for (std::size_t k = 0; k < 5; ++k) chance[k] = changed(0.01 * std::exp2(-static_cast<double>(k)));
     const ErrorEstimate e = estimate_error(chance, 1, 64, {SamplerKind::sobol});
     EXPECT_GT(e.relrmse, 0.0);
     EXPECT_GT(e.cautious, e.relrmse);
@@ -188,7 +236,7 @@ TEST(ErrorBar, S_ADP_03_TwoHalvesThatAgreeAreNoProof) {
 TEST(ErrorBar, KnowsWhatItDoesNotKnow) {
     using Kind = ErrorEstimate::Kind;
     Doublings some{};
-    some[0].add(0.1);
+    some[0] = changed(0.1);
     EXPECT_EQ(estimate_error(some, 10, 1, {SamplerKind::sobol}).kind, Kind::unknown);
     EXPECT_EQ(estimate_error(some, 10, 0, {SamplerKind::random}).kind, Kind::unknown);
     EXPECT_EQ(estimate_error(some, 10, 64, {SamplerKind::regular}).kind, Kind::unknown);
@@ -208,7 +256,7 @@ TEST(ErrorBar, KnowsWhatItDoesNotKnow) {
 // Between powers of two: with independent samples the error of n is exactly that of one over the root of n.
 TEST(ErrorBar, BetweenDoublingsIndependentSamplesFollowTheRoot) {
     Doublings doublings{};
-    for (std::size_t k = 0; k < 7; ++k) doublings[k].add(std::exp2(-static_cast<double>(k) - 1.0));
+    for (std::size_t k = 0; k < 7; ++k) doublings[k] = changed(std::exp2(-static_cast<double>(k) - 1.0));
     const double one = estimate_error(doublings, 1, 128, {SamplerKind::random}).relrmse * std::sqrt(128.0);
     for (const int spp : {129, 150, 192, 255})
         EXPECT_NEAR(estimate_error(doublings, 1, spp, {SamplerKind::random}).relrmse * std::sqrt(spp), one, 1e-9 * one) << spp;
@@ -222,7 +270,7 @@ TEST(ErrorBar, C_10_FindsTheSlowPartOfPaddedSquares) {
         Doublings doublings{};
         for (std::size_t k = 0; k < 10; ++k) {
             const double n = std::exp2(static_cast<double>(k)), change = mse(n) - mse(2.0 * n);
-            doublings[k] = {kPixels * change, kPixels * change * change};
+            doublings[k] = changed(change, kPixels);
         }
         for (const int spp : {8, 32, 128}) {
             const ErrorEstimate e = estimate_error(doublings, kPixels, spp, {SamplerKind::sobol, false});
