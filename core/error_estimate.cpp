@@ -21,11 +21,11 @@ const double kLogSlowest = std::log(0.5), kLogFastest = std::log(0.125);
 const double kLogUsual = std::log(0.4);
 constexpr double kUsualSpread = 0.2;
 // Where several pairs of dimensions are drawn apart (`sobol`), or more of them together than a net is good for (`joint`), what
-// hangs on more than one falls as 1/N, and soon that is all there is. What hangs on one alone falls about as 1/N^1.9, between
+// hangs on more than one falls as 1/N, and soon that is all there is. What hangs on one alone falls about as 1/N^1.7, between
 // edges and smooth integrands.
-constexpr double kFast = 0.27;          // that part's ratio
+constexpr double kFast = 0.3;           // that part's ratio
 constexpr double kFirstSlow = 0.25;     // usual share of the 1/N part in the first change
-constexpr double kMostUsualSlow = 0.5;  // and the largest that counts as usual later
+constexpr double kMostUsualSlow = 0.6;  // and the largest that counts as usual later
 constexpr double kUsualSlowSpread = 0.3;
 constexpr double kModelError = 0.15;  // of the newest change, relative; older ones follow the two powers less and less
 constexpr double kOlder = 1.5;

@@ -156,10 +156,10 @@ namespace glint {
 inline constexpr AdversarialScene kInstanceScenes[] = {
     {"instances_turned", scenes::instances_turned, 4000},
     {"instances_bent", scenes::instances_bent, 4000},
-    {"instances_needle_map", scenes::instances_needle_map, 8000},
+    {"instances_needle_map", scenes::instances_needle_map, kManyRays},
     {"instances_of_all_kinds", scenes::instances_of_all_kinds, 4000},
     {"instances_far", scenes::instances_far, 2000},
-    {"instances_at_one_place", scenes::instances_at_one_place, 8000},
+    {"instances_at_one_place", scenes::instances_at_one_place, kManyRays},
     {"instances_crowd", scenes::instances_crowd, 1000},
     {"instances_scaled_by_decades", scenes::instances_scaled_by_decades, 6000},
     {"instances_flat", scenes::instances_flat, 2500},
