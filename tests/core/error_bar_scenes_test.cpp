@@ -53,6 +53,16 @@ double median(std::vector<double> v) {
     return 0.5 * (v[(v.size() - 1) / 2] + v[v.size() / 2]);
 }
 
+// Samples at which log-log interpolation of the true errors crosses the target.
+double samples_reaching(const std::vector<double>& expected, double target) {
+    for (std::size_t k = 1; k < expected.size(); ++k) {
+        if (expected[k] > target || !(expected[k - 1] > target)) continue;
+        return std::exp2(static_cast<double>(k - 1) +
+                         std::log(expected[k - 1] / target) / std::log(expected[k - 1] / expected[k]));
+    }
+    return 0.0;
+}
+
 // Share of pictures that end within the target when they stop at the first doubling that allows it; least_samples() would keep
 // pictures as small as these from stopping early, so it is that of a large one.
 void count_stops(const Shots& shots, const std::vector<double>& expected, int& stopped, int& within) {
@@ -138,6 +148,17 @@ TEST_P(ErrorBarScene, C_10_S_ADP_02_IntervalsHoldTheTruthAndStopsAreCovered) {
             }
         }
         for (const Shots& r : all) count_stops(r, expected, stopped, within);
+        // From 32 samples: how many does the error of 128 need? Pictures as small as these tell their slope badly.
+        constexpr std::size_t kFrom = 5;
+        const double target = expected.back() * 1.0001;
+        std::vector<double> predicted;
+        for (const Shots& r : all) {
+            const ErrorEstimate& e = r[kFrom].estimate;
+            predicted.push_back(std::exp2(kFrom) * times_until(e, target / e.relrmse) / samples_reaching(expected, target));
+        }
+        note(name + "_predicted", median(predicted));
+        EXPECT_GT(median(predicted), 0.6) << name;
+        EXPECT_LT(median(predicted), 1.7) << name;
     }
     note("held", static_cast<double>(held) / intervals);
     note("within", static_cast<double>(within) / stopped);
