@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -63,23 +65,77 @@ Imf::Slice slice(float* first, int width, const Imath::Box2i& window) {
                             kStep * static_cast<std::size_t>(width), 1, 1, 0.0);
 }
 
-// Whether each attribute of the headers lies within the file: the library takes the memory that one claims before it reads it.
-bool attributes_fit(const std::string& bytes) {
+// Types whose attributes the library reads by their kind, whatever size the file says.
+constexpr std::pair<std::string_view, std::size_t> kFixedSizes[]{{"box2f", 16},
+                                                                 {"box2i", 16},
+                                                                 {"chromaticities", 32},
+                                                                 {"compression", 1},
+                                                                 {"deepImageState", 1},
+                                                                 {"double", 8},
+                                                                 {"envmap", 1},
+                                                                 {"float", 4},
+                                                                 {"int", 4},
+                                                                 {"keycode", 28},
+                                                                 {"lineOrder", 1},
+                                                                 {"m33d", 72},
+                                                                 {"m33f", 36},
+                                                                 {"m44d", 128},
+                                                                 {"m44f", 64},
+                                                                 {"rational", 8},
+                                                                 {"tiledesc", 9},
+                                                                 {"timecode", 8},
+                                                                 {"v2d", 16},
+                                                                 {"v2f", 8},
+                                                                 {"v2i", 8},
+                                                                 {"v3d", 24},
+                                                                 {"v3f", 12},
+                                                                 {"v3i", 12}};
+
+// Little-endian, at a place that need not be within.
+std::uint32_t word_at(std::string_view bytes, std::size_t at) {
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 4 && at + k < bytes.size(); ++k) {
+        word |= std::uint32_t{static_cast<std::uint8_t>(bytes[at + k])} << (8 * k);
+    }
+    return word;
+}
+
+// Whether the library, which goes by what it finds in an attribute's value, comes to the value's end and not beyond.
+bool value_fits(std::string_view type, std::string_view value) {
+    for (const auto& [name, size] : kFixedSizes) {
+        if (type == name) return value.size() == size;
+    }
+    if (type == "floatvector") return value.size() % 4 == 0;
+    if (type == "preview") {
+        const std::uint64_t pixels = std::uint64_t{word_at(value, 0)} * word_at(value, 4);
+        return value.size() >= 8 && value.size() % 4 == 0 && pixels == value.size() / 4 - 2;
+    }
+    std::size_t at = 0;
+    if (type == "stringvector") {
+        while (at < value.size()) at += 4 + std::size_t{word_at(value, at)};
+    } else if (type == "chlist") {
+        constexpr std::size_t kChannel = 16;  // type, linear, sampling; behind a name and its zero
+        while (at < value.size() && value[at] != '\0') at = std::min(value.find('\0', at), value.size()) + 1 + kChannel;
+        ++at;
+    } else {
+        at = value.size();
+    }
+    return at == value.size();
+}
+
+// Whether each attribute of the headers lies within the file, where the library will look for it: it takes the memory that one
+// claims before it reads it.
+bool attributes_fit(std::string_view bytes) {
     std::size_t at = 8;
     const bool several_parts = bytes.size() > at && (bytes[5] & 0x10) != 0;
     do {
         while (at < bytes.size() && bytes[at] != '\0') {
-            for (int word = 0; word < 2; ++word) {  // its name and its type
-                at = bytes.find('\0', at);
-                if (at == std::string::npos) return false;
-                ++at;
-            }
-            std::uint32_t size = 0;
-            for (std::size_t k = 0; k < 4 && at + k < bytes.size(); ++k) {
-                size |= std::uint32_t{static_cast<std::uint8_t>(bytes[at + k])} << (8 * k);
-            }
-            at += 4;
-            if (at > bytes.size() || size > bytes.size() - at) return false;
+            const std::size_t type = bytes.find('\0', at) + 1;  // npos + 1 is 0
+            const std::size_t end = type == 0 ? std::string_view::npos : bytes.find('\0', type);
+            if (end == std::string_view::npos || end + 5 > bytes.size()) return false;
+            at = end + 5;
+            const std::size_t size = word_at(bytes, end + 1);
+            if (size > bytes.size() - at || !value_fits(bytes.substr(type, end - type), bytes.substr(at, size))) return false;
             at += size;
         }
         ++at;
