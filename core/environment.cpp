@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <memory>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 
@@ -99,7 +101,6 @@ glm::vec3 sky_radiance(const Environment& e, glm::vec3 d) {
 }
 
 CubeFace read_face(const fs::path& path) {
-    const std::string file = path.string();
     int width = 0;
     int height = 0;
     int channels = 0;
@@ -111,18 +112,23 @@ CubeFace read_face(const fs::path& path) {
             line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
         return "cannot read the picture: " + line;
     };
+    std::ostringstream contents;
+    contents << std::ifstream(path, std::ios::binary).rdbuf();
+    const std::string bytes = std::move(contents).str();
+    if (bytes.size() > std::size_t{1} << 30) refuse(path, "the file is larger than 2^30 bytes");
+    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+    const int size = static_cast<int>(bytes.size());
     // The header is asked first: decoding allocates what it claims.
-    if (stbi_info(file.c_str(), &width, &height, &channels) == 0) refuse(path, reason());
+    if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) refuse(path, reason());
     const bool usable = width > 0 && height > 0 && width <= kLargestSide && height <= kLargestSide;
     if (!usable || std::int64_t{width} * height > kMostPixels) {
         refuse(path, fmt::format("{} x {} pixels are too many: at most {} a side, 2^26 in all", width, height, kLargestSide));
     }
-    std::error_code unknown;
-    if (!can_hold(fs::file_size(path, unknown), width, height)) {
+    if (!can_hold(bytes.size(), width, height) || !chunks_fit(bytes)) {
         refuse(path, fmt::format("the file is too short for {} x {} pixels", width, height));
     }
-    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(stbi_load(file.c_str(), &width, &height, &channels, 3),
-                                                                      &stbi_image_free);
+    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+        stbi_load_from_memory(data, size, &width, &height, &channels, 3), &stbi_image_free);
     if (!pixels) refuse(path, reason());
     CubeFace face;
     face.width = width;

@@ -167,7 +167,8 @@ StoredImage read_stored_image(const std::filesystem::path& path) {
         throw ImageError(name + ": not a PNG, JPEG, PFM, Radiance or OpenEXR picture");
     }
     if (std::int64_t{width} * height > kMaxImagePixels) throw ImageError(name + ": the picture is too large");
-    if (!can_hold(bytes.size(), width, height)) throw ImageError(name + ": the file is too short for its picture");
+    if (!can_hold(bytes.size(), width, height) || !chunks_fit(bytes))
+        throw ImageError(name + ": the file is too short for its picture");
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_memory(data, static_cast<int>(bytes.size()), &width, &height, &channels, 3), &stbi_image_free);
     if (pixels == nullptr) throw ImageError(name + ": the picture is broken");

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/image.h"
 #include "tests/core/p3f_text.h"
 
 namespace glint {
@@ -259,6 +260,10 @@ TEST(Environment, AMissingBrokenOrHugePictureIsNamed) {
     EXPECT_NE(cube_refusal(sky).find("bottom.png: 16000 x 16000 pixels are too many"), std::string::npos);
     folder.write("sky/bottom.png", "P6 8000 8000 255\n");
     EXPECT_NE(cube_refusal(sky).find("bottom.png: the file is too short for 8000 x 8000 pixels"), std::string::npos);
+    std::string png = encode_png({1, 1, {7, 7, 7}}, Transfer::srgb);
+    png[png.find("IDAT") - 4] = '\x3f';
+    folder.write("sky/bottom.png", png);
+    EXPECT_NE(cube_refusal(sky).find("bottom.png: the file is too short for 1 x 1 pixels"), std::string::npos);
     std::filesystem::remove(sky / "bottom.png");
     std::filesystem::create_directory(sky / "bottom.png");
     EXPECT_NE(cube_refusal(sky).find("missing"), std::string::npos);

@@ -227,6 +227,10 @@ TEST_F(DamagedFile, ClaimsAreNotBelieved) {
     }
     // 16000 x 16000 RGB, by its header alone.
     expect_refused(std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x3e\x80\0\0\x3e\x80\x08\2\0\0\0", 29) + std::string(300, 'x'));
+    // A PNG's data, by their own chunk.
+    std::string png = encode_png(to_display(sample(9, 5), {}), Transfer::srgb);
+    png[png.find("IDAT") - 4] = '\x3f';
+    expect_refused(png, "too short");
     // An attribute of 1.6 GB, of a type that OpenEXR does not know. It would take them before it finds the file's end, untouched,
     // which no peak shows; so it must not come to that.
     expect_refused(std::string("\x76\x2f\x31\x01\2\0\0\0x\0y\0\0\0\0\x60", 16) + std::string(300, '\0'), "its header");
