@@ -1,5 +1,7 @@
 #include "accel/isa.h"
 
+#include <cpuid.h>
+
 #include <atomic>
 #include <cassert>
 
@@ -11,6 +13,12 @@ std::atomic<Isa>& chosen() {
     return isa;
 }
 
+// clang 14 does not know this feature by its name.
+bool counts_leading_zeros() noexcept {
+    unsigned a = 0, b = 0, c = 0, d = 0;
+    return __get_cpuid(0x80000001u, &a, &b, &c, &d) != 0 && (c & 1u << 5) != 0;
+}
+
 }  // namespace
 
 bool supported(Isa isa) noexcept {
@@ -18,7 +26,7 @@ bool supported(Isa isa) noexcept {
         case Isa::baseline: return true;
         case Isa::avx2:
             return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
-                   __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("lzcnt");
+                   __builtin_cpu_supports("bmi2") && counts_leading_zeros();
         case Isa::avx512: break;
     }
     return supported(Isa::avx2) && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&

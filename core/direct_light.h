@@ -63,7 +63,7 @@ private:
 
     void cast_to_lifted(const Light& light, bool starts_at_light, const Vertices& vertices, RayBatch& rays) noexcept;
 
-    float wi_[3][kRayBatch], point_[3][kRayBatch], light_[3][kRayBatch], cosine_[kRayBatch], highlight_[kRayBatch];
+    float wi_[3][kRayBatch], point_[3][kRayBatch], light_[3][kRayBatch], highlight_[kRayBatch];
     std::uint32_t shows_[kRayBatch];   // all bits where there is any light, else none
     std::uint32_t vertex_[kRayBatch];  // of each ray
     std::size_t rays_ = 0;
