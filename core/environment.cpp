@@ -112,13 +112,15 @@ CubeFace read_face(const fs::path& path) {
             line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
         return "cannot read the picture: " + line;
     };
+    // Asked before it is read; stb counts bytes in an int.
+    std::error_code unknown;
+    if (fs::file_size(path, unknown) > std::uintmax_t{1} << 30) refuse(path, "the file is larger than 2^30 bytes");
     std::ostringstream contents;
     contents << std::ifstream(path, std::ios::binary).rdbuf();
     const std::string bytes = std::move(contents).str();
-    if (bytes.size() > std::size_t{1} << 30) refuse(path, "the file is larger than 2^30 bytes");
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     const int size = static_cast<int>(bytes.size());
-    // The header is asked first: decoding allocates what it claims.
+    // The header is asked before decoding, which allocates what it claims.
     if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) refuse(path, reason());
     const bool usable = width > 0 && height > 0 && width <= kLargestSide && height <= kLargestSide;
     if (!usable || std::int64_t{width} * height > kMostPixels) {
