@@ -4,27 +4,38 @@
 set -euo pipefail
 glint=$1
 
-if [ -z "${WINDOW_TEST_SCREEN:-}" ]; then
-  # Without any display: one line that names the way out, exit code 6.
-  code=0
-  line=$(env -u DISPLAY -u WAYLAND_DISPLAY "$glint" view builtin:dof 2>&1) || code=$?
-  [ "$code" = 6 ] || { echo "FAILED: exit code $code without a display" >&2; exit 1; }
-  [[ $line == *"glint render"* && $line != *$'\n'* ]] || { echo "FAILED: without a display: $line" >&2; exit 1; }
-  # A display without OpenGL: the same.
-  code=0
-  line=$(xvfb-run -a -s "-screen 0 640x480x24 -extension GLX" "$glint" view builtin:dof 2>&1) || code=$?
-  [ "$code" = 6 ] || { echo "FAILED: exit code $code without OpenGL" >&2; exit 1; }
-  [[ $line == *"glint render"* && $line != *$'\n'* ]] || { echo "FAILED: without OpenGL: $line" >&2; exit 1; }
-  WINDOW_TEST_SCREEN=1 exec xvfb-run -a -s "-screen 0 1280x800x24" "$0" "$glint"
-fi
-
 folder=$(mktemp -d)
 viewer=
+screen=
 cleanup() {
   [ -z "$viewer" ] || kill "$viewer" 2>/dev/null || true
+  [ -z "$screen" ] || kill "$screen" 2>/dev/null || true
   rm -rf "$folder"
 }
 trap cleanup EXIT
+
+# start_screen OPTION...: a virtual screen of its own, which names its number itself once it answers: nobody guesses a free one.
+start_screen() {
+  local number
+  exec 3< <(exec Xvfb -displayfd 1 -nolisten tcp "$@" 2>"$folder/screen")
+  screen=$!
+  read -r -t 60 -u 3 number || { echo "FAILED: no virtual screen: $(cat "$folder/screen")" >&2; exit 1; }
+  export DISPLAY=:$number
+}
+
+# Without any display: one line that names the way out, exit code 6.
+code=0
+line=$(env -u DISPLAY -u WAYLAND_DISPLAY "$glint" view builtin:dof 2>&1) || code=$?
+[ "$code" = 6 ] || { echo "FAILED: exit code $code without a display" >&2; exit 1; }
+[[ $line == *"glint render"* && $line != *$'\n'* ]] || { echo "FAILED: without a display: $line" >&2; exit 1; }
+# A display without OpenGL: the same.
+start_screen -screen 0 640x480x24 -extension GLX
+code=0
+line=$(env -u WAYLAND_DISPLAY "$glint" view builtin:dof 2>&1) || code=$?
+[ "$code" = 6 ] || { echo "FAILED: exit code $code without OpenGL" >&2; exit 1; }
+[[ $line == *"glint render"* && $line == *OpenGL* && $line != *$'\n'* ]] || { echo "FAILED: without OpenGL: $line" >&2; exit 1; }
+kill "$screen"
+start_screen -screen 0 1280x800x24
 export XDG_PICTURES_DIR=$folder/pictures HOME=$folder
 mkdir "$XDG_PICTURES_DIR"
 
