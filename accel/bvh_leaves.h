@@ -60,15 +60,15 @@ template <class V>
         const V u = difference_of_products(s.cx, s.by, s.cy, s.bx), v = difference_of_products(s.ax, s.cy, s.ay, s.cx),
                 w = difference_of_products(s.bx, s.ay, s.by, s.ax);
         const V lowest = min(min(u, v), w), highest = max(max(u, v), w), det = (u + v) + w;
-        const V distance = (u * s.az + v * s.bz) + w * s.cz;
+        const V beyond = v * (s.bz - s.az) + w * (s.cz - s.az);
         const auto mixed = lt(lowest, V::set(-kLeastEdge)) & lt(V::set(kLeastEdge), highest);
         r.hit =
-            le(V::set(kLeastEdge), max(lowest, zero - highest)) & le(max(abs(det), abs(distance)), V::set(kLargestDeterminant));
+            le(V::set(kLeastEdge), max(lowest, zero - highest)) & le(max(abs(det), abs(beyond)), V::set(kLargestDeterminant));
         r.unsure = (all - mixed) - r.hit;
         const V scale = V::set(1.0f) / det;
         r.u = v * scale;
         r.v = w * scale;
-        r.t = (distance * scale) * inverse_z;
+        r.t = (s.az + beyond * scale) * inverse_z;
     } else {
         r.hit = V::Mask::from_bits(0);
         r.unsure = all - certain_misses(s);

@@ -3,8 +3,8 @@
 namespace glint {
 namespace {
 
-// The errors between the world and an instance's space, in units of the padding: that of the tests below (32 units of 2^-24 and
-// 5 of their own arithmetic), one for each rounding of origin and direction, one for all of double. 39 of 48.
+// The errors between the world and an instance's space, in units of the padding: that of the tests below (40 units of 2^-24 and
+// 5 of their own arithmetic), one for each rounding of origin and direction, one for all of double. 48 of 60.
 constexpr double kObjectPadding = 1.5 * static_cast<double>(kPadding);
 
 }  // namespace

@@ -25,7 +25,7 @@ struct PreparedRay {
 
 // How far a computed hit may stray from the exact ray, in units of origin and geometry: the rounding errors of all tests,
 // summed in accel/README.md.
-constexpr float kPadding = 32.0f * 0x1p-24f;
+constexpr float kPadding = 40.0f * 0x1p-24f;
 
 struct Interval {
     float near, far;

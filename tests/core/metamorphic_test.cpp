@@ -9,6 +9,7 @@
 #include "tests/accel/random.h"
 #include "tests/core/render_picture.h"
 #include "tests/core/test_scene.h"
+#include "tests/long.h"
 
 namespace glint {
 namespace {
@@ -207,9 +208,8 @@ TEST(Unused, S_MET_05_MaterialsThatNothingUsesDoNotShow) {
     EXPECT_EQ(differing_pixels(picture(false), picture(true)), 0u);
 }
 
-// Parallelograms of short binary coordinates, so that both cuts are the same surface exactly. The float test is good to 4 ulp of
-// the truth, so two cuts are hardly ever more than 2 ulp apart and never more than 4.
-TEST(OtherDiagonal, S_MET_04_MovesHitsByTwoUlpHardlyEverMore) {
+// Parallelograms of short binary coordinates, so that both cuts are the same surface exactly.
+TEST(OtherDiagonal, S_MET_04_MovesHitsByTwoUlpAtMost) {
     Random random(44);
     const auto corner = [&random](int half) {
         const auto sixteenth = [&] {
@@ -217,9 +217,9 @@ TEST(OtherDiagonal, S_MET_04_MovesHitsByTwoUlpHardlyEverMore) {
         };
         return glm::vec3(sixteenth(), sixteenth(), sixteenth());
     };
-    int compared = 0, worst = 0, beyond = 0;
+    int compared = 0, worst = 0;
     double from_truth = 0.0;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = scale(20000, 2000000); i > 0; --i) {
         const glm::vec3 c = corner(32), e = corner(16), f = corner(16);
         const glm::vec3 n = glm::cross(e, f);
         if (glm::length(n) < 0.3f * glm::length(e) * glm::length(f)) continue;
@@ -246,15 +246,12 @@ TEST(OtherDiagonal, S_MET_04_MovesHitsByTwoUlpHardlyEverMore) {
             for (const Hit& hit : {a, b})
                 from_truth = std::max(from_truth, std::abs(static_cast<double>(hit.t) - exact) / static_cast<double>(ulp));
             worst = std::max(worst, ulps), ++compared;
-            beyond += ulps > 2 ? 1 : 0;
         }
     }
-    test::note("worst_ulps", worst), test::note("beyond_two_of", compared), test::note("beyond_two", beyond);
-    test::note("ulps_from_truth", from_truth);
+    test::note("worst_ulps", worst), test::note("compared", compared), test::note("ulps_from_truth", from_truth);
     EXPECT_GT(compared, 10000);
     EXPECT_LE(from_truth, 4.0);
-    EXPECT_LE(worst, 4);
-    EXPECT_LE(beyond, compared / 100);
+    EXPECT_LE(worst, 2);
 }
 
 }  // namespace
