@@ -62,8 +62,7 @@ template <class V>
         const V lowest = min(min(u, v), w), highest = max(max(u, v), w), det = (u + v) + w;
         const V beyond = v * (s.bz - s.az) + w * (s.cz - s.az);
         const auto mixed = lt(lowest, V::set(-kLeastEdge)) & lt(V::set(kLeastEdge), highest);
-        r.hit =
-            le(V::set(kLeastEdge), max(lowest, zero - highest)) & le(max(abs(det), abs(beyond)), V::set(kLargestDeterminant));
+        r.hit = le(V::set(kLeastEdge), max(lowest, zero - highest)) & le(max(abs(det), abs(beyond)), V::set(kLargestDeterminant));
         r.unsure = (all - mixed) - r.hit;
         const V scale = V::set(1.0f) / det;
         r.u = v * scale;
