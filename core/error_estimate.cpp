@@ -21,24 +21,24 @@ const double kLogSlowest = std::log(0.5), kLogFastest = std::log(0.125);
 const double kLogUsual = std::log(0.4);
 constexpr double kUsualSpread = 0.2;
 // Where several pairs of dimensions are drawn apart (`sobol`), or more of them together than a net is good for (`joint`), what
-// hangs on more than one falls as 1/N, and soon that is all there is. What hangs on one alone falls about as 1/N^1.7, between
+// hangs on more than one falls as 1/N, and soon that is all there is. What hangs on one alone falls about as 1/N^1.8, between
 // edges and smooth integrands.
-constexpr double kFast = 0.3;           // that part's ratio
+constexpr double kFast = 0.29;          // that part's ratio
 constexpr double kFirstSlow = 0.25;     // usual share of the 1/N part in the first change
 constexpr double kMostUsualSlow = 0.6;  // and the largest that counts as usual later
-constexpr double kUsualSlowSpread = 0.3;
-constexpr double kModelError = 0.15;  // of the newest change, relative; older ones follow the two powers less and less
+constexpr double kUsualSlowSpread = 0.5;
+constexpr double kLeastSlow = 0.1;   // its share of any change: changes that shrink faster have not shown it yet
+constexpr double kModelError = 0.1;  // of the newest change, relative; older ones follow the two powers less and less
 constexpr double kOlder = 1.5;
 // What the two powers leave out. In `joint` errors fall in steps, where samples fill the strata of four or six dimensions.
 constexpr double kSobolSteps = 0.12, kJointSteps = 0.4;
-constexpr std::size_t kPaddedWindow = 4;
 
 // The ratio drifts: as samples grow, the parts of a picture that converge slowly make up more of what is left.
 constexpr double kDrift = 0.07;
 // Changes are weighed by noisy means. By how much that misleads goes with the relative change of the pixels that make up most of
 // it (measured where all pixels are dark but for 4 or 6 % of their samples): shares of that, before and after the next doubling.
 constexpr double kFreshMisled = 0.6, kSettledMisled = 0.5;
-// Changes that are looked at. Two tell the ratio badly, four tell an old one.
+// Changes that are looked at. Two tell how they shrink badly, four how they did before what is rare was seen.
 constexpr std::size_t kWindow = 3;
 
 // Mean squared error and its spread at a power of two.
@@ -61,7 +61,7 @@ const Changes& changes_of(std::span<const Doubling> doublings, std::size_t k) {
 // The last changes, newest first, as means over pixels, and their variances. Pixels are independent, so the variance of their sum
 // is at most the sum of squares.
 struct Window {
-    std::array<double, std::max(kWindow, kPaddedWindow)> change{}, variance{};
+    std::array<double, kWindow> change{}, variance{};
     std::size_t size = 0;
 
     Window(std::span<const Doubling> doublings, std::size_t limit, double pixels) : size(std::min(limit, doublings.size())) {
@@ -159,7 +159,11 @@ Level padded(const Window& w, std::size_t known, double steps) {
     }
     const double determinant = ss * ff - sf * sf;
     double slow = (ff * s - sf * f) / determinant, fast = (ss * f - sf * s) / determinant;
-    if (slow < 0.0) slow = 0.0, fast = f / ff;
+    if (slow < kLeastSlow * (slow + fast)) {
+        constexpr double a = kLeastSlow, b = 1.0 - kLeastSlow;
+        const double change = (a * s + b * f) / (a * a * ss + 2.0 * a * b * sf + b * b * ff);
+        slow = a * change, fast = b * change;
+    }
     if (fast < 0.0) fast = 0.0, slow = s / ss;
     constexpr double kFastRest = kFast / (1.0 - kFast);  // all later changes over the newest
     const double mse = slow + kFastRest * fast;
@@ -200,7 +204,7 @@ Level level_at(std::span<const Doubling> doublings, double pixels, Randomness ra
         default: break;
     }
     if (!random.one_square)
-        return padded({doublings, kPaddedWindow, pixels}, n, random.sampler == SamplerKind::joint ? kJointSteps : kSobolSteps);
+        return padded({doublings, kWindow, pixels}, n, random.sampler == SamplerKind::joint ? kJointSteps : kSobolSteps);
     return scrambled({doublings, kWindow, pixels});
 }
 
