@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace glint {
 namespace {
@@ -32,6 +34,39 @@ std::vector<std::size_t> taken(std::span<const TileState> tiles, const std::vect
         out.push_back(i);
     }
     return out;
+}
+
+// A stratum on the way to half the picture's error. Errors are summed squares, samples those of all its pixels.
+struct Course {
+    ErrorEstimate estimate;
+    double pixels, samples, error;
+    double doublings = 0.0;
+
+    [[nodiscard]] double error_after(double more) const { return error * square_left(estimate, doublings + more); }
+    [[nodiscard]] double samples_after(double more) const { return samples * std::exp2(doublings + more); }
+};
+
+// By how many times all samples have to grow until the error is half, where each goes to the stratum that gains most by it.
+double fewest_times_to_halve(std::vector<Course> courses) {
+    constexpr double kStep = 0.125, kMostTimes = 0x1p10;
+    double pixels = 0.0, before = 0.0, error = 0.0;
+    for (const Course& c : courses) pixels += c.pixels, before += c.samples, error += c.error;
+    double samples = before;
+    const double wanted = 0.25 * error;
+    while (error > wanted && samples < kMostTimes * before) {
+        Course* next = nullptr;
+        double most = -1.0;
+        for (Course& c : courses) {
+            const bool behind = c.samples_after(0.0) / c.pixels * kMostBehind <= samples / pixels;
+            const double gain = (c.error_after(0.0) - c.error_after(kStep)) / (c.samples_after(kStep) - c.samples_after(0.0));
+            const double promised = behind ? std::numeric_limits<double>::infinity() : gain;
+            if (promised > most) most = promised, next = &c;
+        }
+        samples += next->samples_after(kStep) - next->samples_after(0.0);
+        error -= next->error_after(0.0) - next->error_after(kStep);
+        next->doublings += kStep;
+    }
+    return samples / before;
 }
 
 }  // namespace
@@ -69,6 +104,7 @@ ErrorEstimate estimate_error(std::span<const Stratum> strata, int spp, Randomnes
     ErrorEstimate all;
     all.spp = spp;
     double pixels = 0.0, relmse = 0.0, low = 0.0, high = 0.0, cautious = 0.0, slope = 0.0, slow = 0.0;
+    std::vector<Course> courses;
     for (const Stratum& s : strata) {
         const ErrorEstimate e = estimate_error(s.doublings, s.pixels, s.spp, random);
         if (e.kind == ErrorEstimate::Kind::unknown) return all;
@@ -81,6 +117,7 @@ ErrorEstimate estimate_error(std::span<const Stratum> strata, int spp, Randomnes
         cautious += n * e.cautious * e.cautious;
         slope += part * e.slope;
         slow += part * e.slow;
+        courses.push_back({e, n, n * s.spp, part});
     }
     if (!(pixels > 0.0)) return all;
     all.kind = ErrorEstimate::Kind::estimated;
@@ -88,7 +125,11 @@ ErrorEstimate estimate_error(std::span<const Stratum> strata, int spp, Randomnes
     all.low = std::sqrt(low / pixels);
     all.high = std::sqrt(high / pixels);
     all.cautious = std::sqrt(cautious / pixels);
-    if (relmse > 0.0) all.slope = slope / relmse, all.slow = slow / relmse;
+    if (!(relmse > 0.0)) return all;
+    all.slope = slope / relmse;
+    all.slow = slow / relmse;
+    // Tiles are doubled whole, and chosen by changes that are partly chance: half way, as factors, from all alike to the best.
+    all.spared = std::min(1.0, std::sqrt(fewest_times_to_halve(std::move(courses)) / times_until(all, 0.5)));
     return all;
 }
 

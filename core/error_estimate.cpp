@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/sampler.h"
 
@@ -10,9 +9,6 @@ namespace glint {
 namespace {
 
 constexpr double kNinetyFive = 1.96, kCautious = 2.0;
-// Rare events have to show in the picture as a whole, and three doublings have to tell how it converges.
-constexpr int kLeastSamples = 8;
-constexpr std::size_t kLeastPictureSamples = std::size_t{1} << 16;
 
 // By what the next doublings' changes shrink, as the logarithm of the ratio of two in a row: at a slope of 0.5 (random, and no
 // scrambled net is worse in the long run) and 1.5 (smooth integrands, Owen 1997). In between, before there is evidence: the
@@ -262,36 +258,6 @@ ErrorEstimate estimate_error(std::span<const Doubling> doublings, std::size_t pi
     e.high = upper(kNinetyFive);
     e.cautious = upper(kCautious);
     return e;
-}
-
-int least_samples(std::size_t pixels) {
-    const std::size_t each = (kLeastPictureSamples + pixels - 1) / std::max<std::size_t>(1, pixels);
-    return std::max(kLeastSamples, static_cast<int>(std::bit_ceil(each)));
-}
-
-bool error_reached(const ErrorEstimate& e, std::size_t pixels, double target) {
-    if (e.kind == ErrorEstimate::Kind::exact) return true;
-    return e.kind == ErrorEstimate::Kind::estimated && std::has_single_bit(static_cast<std::uint32_t>(e.spp)) &&
-           e.spp >= least_samples(pixels) && e.cautious <= target;
-}
-
-double times_until(const ErrorEstimate& e, double part) {
-    const double rest = e.slow < 1.0 ? (2.0 * e.slope - e.slow) / (1.0 - e.slow) : 1.0;
-    double low = -64.0, high = 64.0;  // log2 of the times
-    for (int i = 0; i < 64; ++i) {
-        const double middle = 0.5 * (low + high);
-        const double mse = e.slow * std::exp2(-middle) + (1.0 - e.slow) * std::exp2(-rest * middle);
-        (mse > part * part ? low : high) = middle;
-    }
-    return std::exp2(high);
-}
-
-int predicted_samples(const ErrorEstimate& e, std::size_t pixels, double target) {
-    if (e.kind != ErrorEstimate::Kind::estimated || !(target > 0.0)) return e.kind == ErrorEstimate::Kind::exact ? e.spp : 0;
-    const double times = e.cautious > target ? times_until(e, target / e.cautious) : 1.0;
-    const double wanted = std::max(times * e.spp, static_cast<double>(least_samples(pixels)));
-    if (!(wanted <= 0x1p30)) return 0;
-    return static_cast<int>(std::bit_ceil(static_cast<std::uint32_t>(std::ceil(wanted))));
 }
 
 }  // namespace glint

@@ -78,6 +78,7 @@ struct ErrorEstimate {
     double cautious = 0.0;         // upper end at z = 2, what stopping goes by
     double slope = 0.5;            // relrmse falls as spp^-slope here,
     double slow = 0.0;             // but this share of its square goes on as 1/spp, so that the slope falls
+    double spared = 1.0;           // of the samples that halving it takes by these two, adaptive sampling takes this part
 };
 
 // What is random in a picture.
@@ -88,6 +89,9 @@ struct Randomness {
 
 // For a picture of `pixels` pixels, each with `spp` samples; doublings: sums over all of them, at least doublings_within(spp).
 [[nodiscard]] ErrorEstimate estimate_error(std::span<const Doubling> doublings, std::size_t pixels, int spp, Randomness random);
+
+// What the error's square is after `doublings` more of all samples, over what it is.
+[[nodiscard]] double square_left(const ErrorEstimate& estimate, double doublings);
 
 // By how many times the samples have to grow until the error is `part` of what it is.
 [[nodiscard]] double times_until(const ErrorEstimate& estimate, double part);

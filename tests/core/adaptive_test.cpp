@@ -119,6 +119,35 @@ TEST(Adaptive, S_DET_01_SameBitsFromThreadsAcceleratorsAndPauses) {
     }
 }
 
+// Independent samples, so that errors fall as 1/N: `share` of the error is where the pixels are `part` of all.
+ErrorEstimate two_strata(double share, double part) {
+    constexpr int kSamples = 64;
+    constexpr std::size_t kPixels = 1000;
+    std::array<Stratum, 2> strata{};
+    for (const std::size_t i : {0, 1}) {
+        strata[i].spp = kSamples;
+        strata[i].pixels = static_cast<std::size_t>((i == 0 ? part : 1.0 - part) * kPixels);
+        for (std::size_t k = 0; k < 6; ++k)
+            strata[i].doublings[k].fresh.sum = (i == 0 ? share : 1.0 - share) * std::exp2(-double(k));
+        for (Doubling& d : strata[i].doublings) d.settled = d.fresh;
+    }
+    return estimate_error(strata, kSamples, {SamplerKind::random});
+}
+
+// Forecasts count with what choosing tiles spares, half of it. All error in half of the pixels: 2 * 4 more samples there, none
+// elsewhere, make 2.5 times all samples, not 4.
+TEST(Adaptive, C_10_ForecastsCountWithTheChoiceOfTiles) {
+    EXPECT_NEAR(two_strata(0.5, 0.5).spared, 1.0, 0.01);
+    EXPECT_NEAR(times_until(two_strata(0.5, 0.5), 0.25), 16.0, 0.3);
+    const ErrorEstimate e = two_strata(1.0, 0.5);
+    EXPECT_NEAR(e.spared, std::sqrt(2.5 / 4.0), 0.02);
+    EXPECT_NEAR(times_until(e, 0.5), 4.0 * e.spared, 1e-6);
+    EXPECT_NEAR(times_until(e, 0.25), 16.0 * e.spared, 1e-6);
+    EXPECT_NEAR(times_until(e, 1.0), 1.0, 1e-6);
+    // The fewer pixels have the error, the more is spared.
+    EXPECT_LT(two_strata(1.0, 0.1).spared, two_strata(1.0, 0.5).spared);
+}
+
 TEST(Adaptive, WhereNothingIsRandomOneSampleIsTaken) {
     const auto scene = load_scene("builtin:balls,level=1");
     Picture p = adaptive_picture(*scene, 40, 30, 64);
