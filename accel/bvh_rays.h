@@ -91,8 +91,9 @@ inline Float8::Mask enter(const BvhNode& node, const SlabRay& ray, Float8 limit,
         n[i] = mul_sub(row(ray.near_row[i]), ray.reciprocal[i], ray.near_offset[i]);
         f[i] = mul_sub(row(ray.near_row[i] ^ kRow), ray.reciprocal[i], ray.far_offset[i]);
     }
-    near = max(max(n[0], n[1]), max(n[2], Float8::set(0.0f)));
-    return le(near, min(min(f[0], f[1]), min(f[2], limit)));
+    // 0 and limit are not negative, so whichever of several negative distances is taken, it decides alike.
+    near = max_as_integers(max_as_integers(n[0], n[1]), max_as_integers(n[2], Float8::set(0.0f)));
+    return le(near, min_as_integers(min_as_integers(f[0], f[1]), min_as_integers(f[2], limit)));
 }
 
 // Asks memory for a whole node or leaf.

@@ -234,6 +234,23 @@ inline void copy_where(Float16::Mask m, const void* from, void* to) {
 
 #endif
 
+// The greater, and the lesser, of two as integers, whose order is that of the floats while one is not negative; of two negative
+// ones either. Intel's processors take one cycle for that, for floats four.
+inline Float8 max_as_integers(Float8 a, Float8 b) {
+#if defined(__AVX2__)
+    return {_mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a.v), _mm256_castps_si256(b.v)))};
+#else
+    return max(a, b);
+#endif
+}
+inline Float8 min_as_integers(Float8 a, Float8 b) {
+#if defined(__AVX2__)
+    return {_mm256_castsi256_ps(_mm256_min_epi32(_mm256_castps_si256(a.v), _mm256_castps_si256(b.v)))};
+#else
+    return min(a, b);
+#endif
+}
+
 // Bits of the ids that differ from the one before; the first always does. p[-1] must be readable.
 inline unsigned distinct(const std::uint32_t* p) {
 #if defined(__AVX2__)
