@@ -36,13 +36,14 @@ struct Flight {
 template <bool any>
 inline void step_node(const BvhView& bvh, Flight& f) noexcept {
     const BvhNode& node = bvh.node(f.at);
-    Float8 near;
-    const Float8::Mask entered = enter(node, SlabRay(f.scalars), Float8::set(f.best.t), near);
+    const SlabRay ray(f.scalars);
+    const Float8 limit = Float8::set(f.best.t);
     int top = f.top;
     if constexpr (any) {
-        push_all_unsorted(f.stack, top, node, entered.bits());
+        Float8 near;
+        push_all_unsorted(f.stack, top, node, enter(node, ray, limit, near).bits());
     } else {
-        push_all(f.stack, top, node, entered, f.scalars.shift, near);
+        ChildrenInOrder(node, ray, limit).push_all(f.stack, top);
     }
     f.top = top;
 }

@@ -81,8 +81,8 @@ struct SlabRay {
     }
 };
 
-// The children that the ray may enter before `limit`, and where.
-inline Float8::Mask enter(const BvhNode& node, const SlabRay& ray, Float8 limit, Float8& near) noexcept {
+// Where the ray comes into each child and leaves it, or reaches `limit` within: it meets those with near <= far.
+inline void slabs(const BvhNode& node, const SlabRay& ray, Float8 limit, Float8& near, Float8& far) noexcept {
     const auto row = [&](std::uint32_t at) {
         return Float8::load(reinterpret_cast<const float*>(reinterpret_cast<const char*>(node.bounds) + at));
     };
@@ -93,7 +93,12 @@ inline Float8::Mask enter(const BvhNode& node, const SlabRay& ray, Float8 limit,
     }
     // 0 and limit are not negative, so whichever of several negative distances is taken, it decides alike.
     near = max_as_integers(max_as_integers(n[0], n[1]), max_as_integers(n[2], Float8::set(0.0f)));
-    return le(near, min_as_integers(min_as_integers(f[0], f[1]), min_as_integers(f[2], limit)));
+    far = min_as_integers(min_as_integers(f[0], f[1]), min_as_integers(f[2], limit));
+}
+inline Float8::Mask enter(const BvhNode& node, const SlabRay& ray, Float8 limit, Float8& near) noexcept {
+    Float8 far;
+    slabs(node, ray, limit, near, far);
+    return le(near, far);
 }
 
 // Asks memory for a whole node or leaf.

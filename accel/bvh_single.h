@@ -147,6 +147,70 @@ inline int sort_children(const BvhNode& node, unsigned mask, unsigned shift, std
 #endif
 }
 
+#if defined(__AVX2__)
+// The children that a ray may enter, in the node's order, far first. Distances are brought into it before they are compared, and
+// the children beside: so what comes next is known as soon as the comparison is.
+class ChildrenInOrder {
+public:
+    ChildrenInOrder(const BvhNode& node, const SlabRay& ray, Float8 limit) noexcept {
+        const __m256i order =
+            _mm256_srli_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.order)), static_cast<int>(ray.shift));
+        refs_ = _mm256_permutevar8x32_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.child)), order);
+        _mm256_store_si256(reinterpret_cast<__m256i*>(ref_), refs_);
+        Float8 near, far;
+        slabs(node, ray, limit, near, far);
+        near_ = _mm256_permutevar8x32_ps(near.v, order);
+        entered_ = le(Float8{near_}, Float8{_mm256_permutevar8x32_ps(far.v, order)}).bits();
+    }
+    [[nodiscard]] bool none() const noexcept { return entered_ == 0; }
+    // Pushes all but the nearest one, which it returns; there must be one.
+    BvhRef push_others(TraversalStack& stack, int& top) const noexcept {
+        const int nearest = 31 - __builtin_clz(entered_);
+        const unsigned others = entered_ ^ 1u << nearest;
+        if (others != 0) push(stack, top, others);
+        return ref_[nearest];
+    }
+    void push_all(TraversalStack& stack, int& top) const noexcept { push(stack, top, entered_); }
+
+private:
+    void push(TraversalStack& stack, int& top, unsigned places) const noexcept {
+#if defined(__AVX512VL__)
+        const auto kept = static_cast<__mmask8>(places);
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_maskz_compress_epi32(kept, refs_));
+        _mm256_storeu_ps(stack.near + top, _mm256_maskz_compress_ps(kept, near_));
+#else
+        const __m256i front = front_lanes(places);
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_permutevar8x32_epi32(refs_, front));
+        _mm256_storeu_ps(stack.near + top, _mm256_permutevar8x32_ps(near_, front));
+#endif
+        top += __builtin_popcount(places);
+    }
+    alignas(32) BvhRef ref_[kBvhWidth];
+    __m256i refs_;
+    __m256 near_;
+    unsigned entered_;
+};
+#else
+class ChildrenInOrder {
+public:
+    ChildrenInOrder(const BvhNode& node, const SlabRay& ray, Float8 limit) noexcept
+        : node_(node), shift_(ray.shift), entered_(enter(node, ray, limit, near_)) {}
+    [[nodiscard]] bool none() const noexcept { return entered_.bits() == 0; }
+    BvhRef push_others(TraversalStack& stack, int& top) const noexcept {
+        return push_children(stack, top, node_, entered_, shift_, near_);
+    }
+    void push_all(TraversalStack& stack, int& top) const noexcept {
+        glint::GLINT_ISA::push_all(stack, top, node_, entered_, shift_, near_);
+    }
+
+private:
+    const BvhNode& node_;
+    unsigned shift_;
+    Float8 near_;
+    Float8::Mask entered_;
+};
+#endif
+
 // Improves `best`. With `any`, ends at the first hit; `blocker` is then the leaf to look at first (0: none, the root is no leaf)
 // and becomes the one that was hit. `visit(ref)` hears of every node and leaf.
 template <bool any, class Visit>
@@ -162,30 +226,41 @@ template <bool any, class Visit>
             blocker = 0;
         }
     }
-    const SlabRay slabs(scalars);
+    const SlabRay slab_ray(scalars);
     TraversalStack stack;
     int top = 0;
     Float8 limit = Float8::set(best.t);
     BvhRef at = 0;
+    // Goes on to the last child left behind that may still count; false where there is none.
+    const auto pop = [&] {
+        do {
+            if (top == 0) return false;
+            --top;
+        } while (!any && stack.near[top] > best.t);
+        at = stack.ref[top];
+        return true;
+    };
     for (;;) {
         while ((at & kLeafBit) == 0) {
             visit(at);
             const BvhNode& node = bvh.node(at);
-            Float8 near;
-            const Float8::Mask entered = enter(node, slabs, limit, near);
-            const unsigned mask = entered.bits();
-            if (mask == 0) {
-                do {
-                    if (top == 0) return;
-                    --top;
-                } while (!any && stack.near[top] > best.t);
-                at = stack.ref[top];
-            } else if ((mask & (mask - 1)) == 0) {
-                at = node.child[__builtin_ctz(mask)];
-            } else if constexpr (any) {
-                at = push_unsorted(stack, top, node, mask);
+            if constexpr (any) {
+                Float8 near;
+                const unsigned mask = enter(node, slab_ray, limit, near).bits();
+                if (mask == 0) {
+                    if (!pop()) return;
+                } else if ((mask & (mask - 1)) == 0) {
+                    at = node.child[__builtin_ctz(mask)];
+                } else {
+                    at = push_unsorted(stack, top, node, mask);
+                }
             } else {
-                at = push_children(stack, top, node, entered, slabs.shift, near);
+                const ChildrenInOrder children(node, slab_ray, limit);
+                if (!children.none()) {
+                    at = children.push_others(stack, top);
+                } else if (!pop()) {
+                    return;
+                }
             }
         }
         visit(at);
@@ -195,11 +270,7 @@ template <bool any, class Visit>
             return;
         }
         limit = Float8::set(best.t);
-        do {
-            if (top == 0) return;
-            --top;
-        } while (!any && stack.near[top] > best.t);
-        at = stack.ref[top];
+        if (!pop()) return;
     }
 }
 
