@@ -19,12 +19,12 @@ constexpr double kUsualSpread = 0.2;
 // Where several pairs of dimensions are drawn apart (`sobol`), or more of them together than a net is good for (`joint`), what
 // hangs on more than one falls as 1/N, and soon that is all there is. What hangs on one alone falls about as 1/N^1.8, between
 // edges and smooth integrands.
-constexpr double kFast = 0.29;          // that part's ratio
-constexpr double kFirstSlow = 0.25;     // usual share of the 1/N part in the first change
-constexpr double kMostUsualSlow = 0.6;  // and the largest that counts as usual later
-constexpr double kUsualSlowSpread = 0.5;
-constexpr double kLeastSlow = 0.1;   // its share of any change: changes that shrink faster have not shown it yet
-constexpr double kModelError = 0.1;  // of the newest change, relative; older ones follow the two powers less and less
+constexpr double kFast = 0.295;          // that part's ratio
+constexpr double kFirstSlow = 0.25;      // usual share of the 1/N part in the first change
+constexpr double kMostUsualSlow = 0.45;  // and the largest that counts as usual later
+constexpr double kUsualSlowSpread = 0.6;
+constexpr double kLeastSlow = 0.1;    // its share of any change: changes that shrink faster have not shown it yet
+constexpr double kModelError = 0.16;  // of the newest change, relative; older ones follow the two powers less and less
 constexpr double kOlder = 1.5;
 // What the two powers leave out. In `joint` errors fall in steps, where samples fill the strata of four or six dimensions.
 constexpr double kSobolSteps = 0.12, kJointSteps = 0.4;
