@@ -46,6 +46,22 @@ inline __m256i front_lanes(unsigned set) noexcept {
 }
 #endif
 
+#if defined(__AVX2__)
+// Pushes the children at these places of a node's order.
+inline void push_places(TraversalStack& stack, int& top, __m256i refs, __m256 near, unsigned places) noexcept {
+#if defined(__AVX512VL__)
+    const auto kept = static_cast<__mmask8>(places);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_maskz_compress_epi32(kept, refs));
+    _mm256_storeu_ps(stack.near + top, _mm256_maskz_compress_ps(kept, near));
+#else
+    const __m256i front = front_lanes(places);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_permutevar8x32_epi32(refs, front));
+    _mm256_storeu_ps(stack.near + top, _mm256_permutevar8x32_ps(near, front));
+#endif
+    top += __builtin_popcount(places);
+}
+#endif
+
 // Pushes all children entered, none or many, far to near, and returns the place in the node's order of the nearest one.
 inline int push_all(TraversalStack& stack, int& top, const BvhNode& node, Float8::Mask entered, unsigned shift,
                     Float8 near) noexcept {
@@ -56,9 +72,7 @@ inline int push_all(TraversalStack& stack, int& top, const BvhNode& node, Float8
     const __m256 sorted = _mm256_permutexvar_ps(order, _mm256_mask_blend_ps(static_cast<__mmask8>(entered.m), inf, near.v));
     const __m256i refs = _mm256_permutexvar_epi32(order, _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child)));
     const __mmask8 present = _mm256_cmp_ps_mask(sorted, inf, _CMP_LT_OQ);
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_maskz_compress_epi32(present, refs));
-    _mm256_storeu_ps(stack.near + top, _mm256_maskz_compress_ps(present, sorted));
-    top += __builtin_popcount(entered.m);
+    push_places(stack, top, refs, sorted, present);
     return 31 - __builtin_clz(static_cast<unsigned>(present) | 1u);
 #elif defined(__AVX2__)
     const __m256i order =
@@ -67,10 +81,7 @@ inline int push_all(TraversalStack& stack, int& top, const BvhNode& node, Float8
     const __m256i refs = _mm256_permutevar8x32_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(node.child)), order);
     // Sorted as lanes, not as bits: those would have to come back from the integer side.
     const auto present = static_cast<unsigned>(_mm256_movemask_ps(_mm256_permutevar8x32_ps(entered.v, order)));
-    const __m256i front = front_lanes(present);
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_permutevar8x32_epi32(refs, front));
-    _mm256_storeu_ps(stack.near + top, _mm256_permutevar8x32_ps(sorted, front));
-    top += __builtin_popcount(present);
+    push_places(stack, top, refs, sorted, present);
     return 31 - __builtin_clz(present | 1u);
 #else
     alignas(32) float distance[kBvhWidth];
@@ -167,24 +178,12 @@ public:
     BvhRef push_others(TraversalStack& stack, int& top) const noexcept {
         const int nearest = 31 - __builtin_clz(entered_);
         const unsigned others = entered_ ^ 1u << nearest;
-        if (others != 0) push(stack, top, others);
+        if (others != 0) push_places(stack, top, refs_, near_, others);
         return ref_[nearest];
     }
-    void push_all(TraversalStack& stack, int& top) const noexcept { push(stack, top, entered_); }
+    void push_all(TraversalStack& stack, int& top) const noexcept { push_places(stack, top, refs_, near_, entered_); }
 
 private:
-    void push(TraversalStack& stack, int& top, unsigned places) const noexcept {
-#if defined(__AVX512VL__)
-        const auto kept = static_cast<__mmask8>(places);
-        _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_maskz_compress_epi32(kept, refs_));
-        _mm256_storeu_ps(stack.near + top, _mm256_maskz_compress_ps(kept, near_));
-#else
-        const __m256i front = front_lanes(places);
-        _mm256_storeu_si256(reinterpret_cast<__m256i*>(stack.ref + top), _mm256_permutevar8x32_epi32(refs_, front));
-        _mm256_storeu_ps(stack.near + top, _mm256_permutevar8x32_ps(near_, front));
-#endif
-        top += __builtin_popcount(places);
-    }
     alignas(32) BvhRef ref_[kBvhWidth];
     __m256i refs_;
     __m256 near_;
