@@ -3,8 +3,9 @@
 // Grot 2015, "Asynchronous Memory Access Chaining"). Invariant: each ray goes the way that traverse() would take it.
 #pragma once
 
+#include "accel/bvh_children.h"
+#include "accel/bvh_leaves.h"
 #include "accel/bvh_prepare.h"
-#include "accel/bvh_single.h"
 
 namespace glint::GLINT_ISA {
 

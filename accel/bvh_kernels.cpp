@@ -3,6 +3,7 @@
 #include "accel/bvh_flight.h"
 #include "accel/bvh_frustum.h"
 #include "accel/bvh_leftovers.h"
+#include "accel/bvh_single.h"
 
 // Compiled once per instruction set (CMakeLists.txt says with which flags).
 namespace glint::GLINT_ISA {

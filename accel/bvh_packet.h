@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "accel/bvh_edges.h"
-#include "accel/bvh_single.h"
+#include "accel/bvh_children.h"
 
 namespace glint::GLINT_ISA {
 

@@ -15,9 +15,10 @@ cleanup() {
 trap cleanup EXIT
 
 # start_screen OPTION...: a virtual screen of its own, which names its number itself once it answers: nobody guesses a free one.
+# -noreset: or it would begin anew when its last client left, and refuse whoever comes meanwhile.
 start_screen() {
   local number
-  exec 3< <(exec Xvfb -displayfd 1 -nolisten tcp "$@" 2>"$folder/screen")
+  exec 3< <(exec Xvfb -displayfd 1 -noreset -nolisten tcp "$@" 2>"$folder/screen")
   screen=$!
   read -r -t 60 -u 3 number || { echo "FAILED: no virtual screen: $(cat "$folder/screen")" >&2; exit 1; }
   export DISPLAY=:$number
