@@ -60,7 +60,10 @@ inline void traverse_in_flight(const BvhView& bvh, const RayBatch& rays, Wanted 
     int i = 0;
     const auto start = [&](Flight& f) {
         for (; i < rays.count; ++i) {
-            if (i % kGroup == 0) prepared.prepare(rays, i, bvh.magnitude);
+            if (i % kGroup == 0) {
+                fetch_rays(rays, i + kGroup, kGroup);
+                prepared.prepare(rays, i, bvh.magnitude);
+            }
             if (!prepared.usable(i % kGroup) || !wanted(i)) continue;
             prepared.share(i % kGroup, f.scalars);
             for (int k = 0; k < 3; ++k) {

@@ -101,6 +101,18 @@ void end(const Group& g, HitBatch& hits) noexcept {
     copy_where(lanes, g.id, hits.primitive + g.first);
 }
 
+// Asks memory for the rays first to first + count - 1 and for what is to be written of them.
+void fetch(const RayBatch& rays, const HitBatch& hits, int first, int count) noexcept {
+    fetch_rays(rays, first, count);
+    const int last = first + count < rays.count ? first + count : rays.count;
+    for (int i = first; i < last; i += kGroup) {
+        __builtin_prefetch(hits.t + i, 1);
+        __builtin_prefetch(hits.u + i, 1);
+        __builtin_prefetch(hits.v + i, 1);
+        __builtin_prefetch(hits.primitive + i, 1);
+    }
+}
+
 // Whether the span is narrow against the leaves.
 bool narrow_beside_leaves(const BvhView& bvh, const Span& s) noexcept {
     const float x = (s.x.hi_a - s.x.lo_a) + (s.x.hi_b - s.x.lo_b), y = (s.y.hi_a - s.y.lo_a) + (s.y.hi_b - s.y.lo_b);
@@ -112,7 +124,9 @@ void closest_in_groups(const BvhView& bvh, const RayBatch& rays, HitBatch& hits,
     constexpr int kRays = kFrustumGroups * kGroup;
     Group groups[kFrustumGroups];
     Span spans[kFrustumGroups], all;
+    fetch(rays, hits, 0, kRays);
     for (int first = 0; first < rays.count; first += kRays) {
+        fetch(rays, hits, first + kRays, kRays);
         bool gathered[kFrustumGroups] = {};
         Float16 padding[kFrustumGroups];
         bool together = rays.order == RayOrder::common_origin && rays.count - first >= kRays;
@@ -180,6 +194,7 @@ void occluded_in_groups(const BvhView& bvh, const RayBatch& rays, bool* result, 
     const bool near_first = bvh.only_triangles && bvh.bytes > kCached;
     for (int first = 0; first < rays.count; first += kGroup) {
         const int count = rays.count - first < kGroup ? rays.count - first : kGroup;
+        fetch_rays(rays, first + 2 * kGroup, kGroup);
         Group g;
         Span span;
         Float16 padding;

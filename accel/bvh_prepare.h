@@ -1,4 +1,4 @@
-// prepare() for sixteen rays of a batch at once, and one ray's share of it.
+// prepare() for sixteen rays of a batch at once, one ray's share of it, and what asks memory for them beforehand.
 // Invariant: the values of prepare(), operation for operation.
 #pragma once
 
@@ -80,6 +80,19 @@ private:
     int first_ = 0;
     unsigned axis_x_ = 0, axis_y_ = 0, usable_ = 0, forward_[3] = {};
 };
+
+// Asks memory for rays first to first + count - 1, as far as there are any. A batch's arrays are too short for a processor to
+// foresee that it will be read on.
+inline void fetch_rays(const RayBatch& rays, int first, int count) noexcept {
+    const int last = first + count < rays.count ? first + count : rays.count;
+    for (int i = first; i < last; i += kGroup) {
+        for (int axis = 0; axis < 3; ++axis) {
+            __builtin_prefetch(rays.origin[axis] + i);
+            __builtin_prefetch(rays.direction[axis] + i);
+        }
+        __builtin_prefetch(rays.t_max + i);
+    }
+}
 
 // One ray of the batch.
 inline void load(const RayBatch& rays, int i, Ray& ray) noexcept {
