@@ -94,23 +94,12 @@ void begin(const HitBatch& hits, int count, Group& g) noexcept {
     copy_where(Float16::Mask::from_bits(0xffffu), hits.primitive + g.first, g.id);
 }
 void end(const Group& g, HitBatch& hits) noexcept {
+    if (g.found == 0) return;
     const auto lanes = Float16::Mask::from_bits(g.found);
     copy_where(lanes, g.t, hits.t + g.first);
     copy_where(lanes, g.u, hits.u + g.first);
     copy_where(lanes, g.v, hits.v + g.first);
     copy_where(lanes, g.id, hits.primitive + g.first);
-}
-
-// Asks memory for the rays first to first + count - 1 and for what is to be written of them.
-void fetch(const RayBatch& rays, const HitBatch& hits, int first, int count) noexcept {
-    fetch_rays(rays, first, count);
-    const int last = first + count < rays.count ? first + count : rays.count;
-    for (int i = first; i < last; i += kGroup) {
-        __builtin_prefetch(hits.t + i, 1);
-        __builtin_prefetch(hits.u + i, 1);
-        __builtin_prefetch(hits.v + i, 1);
-        __builtin_prefetch(hits.primitive + i, 1);
-    }
 }
 
 // Whether the span is narrow against the leaves.
@@ -124,9 +113,9 @@ void closest_in_groups(const BvhView& bvh, const RayBatch& rays, HitBatch& hits,
     constexpr int kRays = kFrustumGroups * kGroup;
     Group groups[kFrustumGroups];
     Span spans[kFrustumGroups], all;
-    fetch(rays, hits, 0, kRays);
+    fetch_rays(rays, 0, kRays);
     for (int first = 0; first < rays.count; first += kRays) {
-        fetch(rays, hits, first + kRays, kRays);
+        fetch_rays(rays, first + kRays, kRays);
         bool gathered[kFrustumGroups] = {};
         Float16 padding[kFrustumGroups];
         bool together = rays.order == RayOrder::common_origin && rays.count - first >= kRays;
