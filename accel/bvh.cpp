@@ -51,11 +51,12 @@ Bvh::Bvh(std::shared_ptr<const Geometry> geometry, const ParallelFor& parallel_f
       view_(tree_.view(*geometry_)),
       has_planes_(!geometry_->planes.empty()),
       kernels_(&bvh_kernels(isa)),
-      instances_(InstanceLevel<Bvh>::build(geometry_, parallel_for, isa, [&](std::shared_ptr<const Geometry> prototype) {
-          return Bvh(std::move(prototype), parallel_for, isa, quality);
-      })) {}
+      instances_(InstanceLevel<Bvh>::build(
+          geometry_, parallel_for, isa,
+          [&](std::shared_ptr<const Geometry> prototype) { return Bvh(std::move(prototype), parallel_for, isa, quality); })),
+      tree_alone_(view_.units != nullptr && !has_planes_ && instances_ == nullptr) {}
 
-Hit Bvh::closest_hit(const Ray& ray) const noexcept {
+Hit Bvh::closest_of_all(const Ray& ray) const noexcept {
     Hit best;
     best.t = ray.t_max;
     if (has_planes_) best = begin_query(PreparedRay(ray, view_.magnitude), *geometry_);
@@ -64,7 +65,7 @@ Hit Bvh::closest_hit(const Ray& ray) const noexcept {
     return best;
 }
 
-bool Bvh::occluded(const Ray& ray) const noexcept {
+bool Bvh::occluded_by_any(const Ray& ray) const noexcept {
     if (has_planes_ && begin_query(PreparedRay(ray, view_.magnitude), *geometry_).found()) return true;
     if (view_.units != nullptr && kernels_->occluded(view_, ray)) return true;
     return instances_ != nullptr && instances_->occluded(ray);

@@ -50,8 +50,17 @@ public:
     explicit Bvh(std::shared_ptr<const Geometry> geometry, const ParallelFor& parallel_for = serial_for, Isa isa = isa_in_use(),
                  BuildQuality quality = BuildQuality::quality);
 
-    [[nodiscard]] Hit closest_hit(const Ray& ray) const noexcept;
-    [[nodiscard]] bool occluded(const Ray& ray) const noexcept;
+    // Inline, as the call on top of the kernel's took 2 to 4 % of a camera ray.
+    [[nodiscard]] Hit closest_hit(const Ray& ray) const noexcept {
+        if (!tree_alone_) return closest_of_all(ray);
+        Hit best;
+        best.t = ray.t_max;
+        kernels_->closest(view_, ray, best);
+        return best;
+    }
+    [[nodiscard]] bool occluded(const Ray& ray) const noexcept {
+        return tree_alone_ ? kernels_->occluded(view_, ray) : occluded_by_any(ray);
+    }
     void closest_hits(const RayBatch& rays, HitBatch& hits) const noexcept;
     void occluded(const RayBatch& rays, OccludedBatch& result) const noexcept;
     [[nodiscard]] std::size_t memory_bytes() const;
@@ -60,12 +69,16 @@ public:
     [[nodiscard]] TraversalCounts count_traversal(const RayBatch& rays) const noexcept;
 
 private:
+    [[nodiscard]] Hit closest_of_all(const Ray& ray) const noexcept;
+    [[nodiscard]] bool occluded_by_any(const Ray& ray) const noexcept;
+
     std::shared_ptr<const Geometry> geometry_;
     BvhTree tree_;
     BvhView view_;
     bool has_planes_ = false;
     const BvhKernels* kernels_;
     std::shared_ptr<const InstanceLevel<Bvh>> instances_;  // null where there are none
+    bool tree_alone_ = false;                              // there is a tree, and neither planes nor instances
 };
 
 }  // namespace glint
