@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "accel/accelerator.h"
+#include "accel/bvh_successors.h"
 #include "tests/accel/adversarial_scenes.h"
 #include "tests/accel/bvh_survey.h"
 #include "tests/accel/hit_report.h"
@@ -124,6 +125,16 @@ TEST(BvhTree, WhatBlockedARayOfOneTreeBlocksNoneOfAnother) {
         for (int i = 0; i < 20; ++i) {  // likely in the same memory each time
             EXPECT_EQ(Bvh(with_ball_at(i % 2 == 0 ? 0.0f : 3.0f), serial_for, isa).occluded(ray), i % 2 == 0);
         }
+    }
+}
+
+// A thread's table of what came next is keyed by the low bits of references, which trees and distant nodes share.
+TEST(BvhTree, WhatCameNextTheLastTimeIsAGuessOnly) {
+    using namespace GLINT_ISA;
+    for (const BvhRef next : {8u, 12u, 8u, kLeafBit | 8u, 8u, 8u}) {
+        EXPECT_EQ(follow<false>(4, next), next);
+        EXPECT_EQ(follow<false>(4 + Successors::kPlaces, next + 1), next + 1);
+        EXPECT_EQ(follow<true>(4, next + 2), next + 2);
     }
 }
 
