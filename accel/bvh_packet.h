@@ -6,8 +6,8 @@
 
 #include <type_traits>
 
-#include "accel/bvh_edges.h"
 #include "accel/bvh_children.h"
+#include "accel/bvh_edges.h"
 
 namespace glint::GLINT_ISA {
 
