@@ -115,7 +115,6 @@ void closest_in_groups(const BvhView& bvh, const RayBatch& rays, HitBatch& hits,
     Span spans[kFrustumGroups], all;
     fetch_rays(rays, 0, kRays);
     for (int first = 0; first < rays.count; first += kRays) {
-        fetch_rays(rays, first + kRays, kRays);
         bool gathered[kFrustumGroups] = {};
         Float16 padding[kFrustumGroups];
         bool together = rays.order == RayOrder::common_origin && rays.count - first >= kRays;
@@ -123,6 +122,7 @@ void closest_in_groups(const BvhView& bvh, const RayBatch& rays, HitBatch& hits,
             const int at = first + i * kGroup, left = rays.count - at;
             if (left <= 0) break;
             gathered[i] = gather(bvh, rays, at, left < kGroup ? left : kGroup, groups[i], spans[i], padding[i]);
+            fetch_rays(rays, at + kRays, kGroup);
             if (gathered[i]) begin(hits, left < kGroup ? left : kGroup, groups[i]);
             together = together && gathered[i] && spans[i].common;
             for (int axis = 0; axis < 3; ++axis) together = together && rays.origin[axis][at] == rays.origin[axis][first];
