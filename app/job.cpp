@@ -1,6 +1,4 @@
 // Where options meet the scene: see Job in options.h.
-#include <sched.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +7,7 @@
 
 #include "app/options.h"
 #include "core/accelerator_choice.h"
+#include "core/threads.h"
 
 namespace glint {
 namespace {
@@ -54,12 +53,7 @@ std::shared_ptr<const Scene> with_sky(const Scene& scene) {
 
 }  // namespace
 
-int available_threads() {
-    cpu_set_t mask;
-    CPU_ZERO(&mask);
-    const int cores = sched_getaffinity(0, sizeof mask, &mask) == 0 ? std::max(1, CPU_COUNT(&mask)) : 1;
-    return quota_threads(cores);
-}
+int available_threads() { return quota_threads(usable_processors()); }
 
 std::string default_scene() {
     namespace fs = std::filesystem;

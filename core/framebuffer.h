@@ -32,7 +32,9 @@ struct PixelSum {
             radiance += glm::dvec3(*sample);
         else
             ++rejected;
-        if (std::has_single_bit(++taken)) note_doubling(doublings);
+        ++taken;
+        // Not std::has_single_bit(), which calls a function where the processor is not known to count bits.
+        if ((taken & (taken - 1)) == 0) note_doubling(doublings);
     }
 
 private:

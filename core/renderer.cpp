@@ -12,10 +12,12 @@ namespace glint {
 
 Renderer::Renderer(int threads, bool preview, bool pinned) : state_(std::make_unique<State>(preview)) {
     workers_.reserve(static_cast<std::size_t>(std::max(1, threads)));
+    // Woken together, workers may start on one processor and wait for each other there until the system notices.
+    const bool one_each = pinned || threads == usable_processors();
     for (int i = 0; i < std::max(1, threads); ++i) {
         try {
-            workers_.emplace_back([this, pinned, i] {
-                if (pinned) pin_to_processor(i);
+            workers_.emplace_back([this, one_each, i] {
+                if (one_each) pin_to_processor(i);
                 state_->run_worker();
             });
         } catch (const std::exception&) {

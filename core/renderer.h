@@ -44,7 +44,7 @@ class Renderer {
 public:
     // threads >= 1; fewer where the system refuses some, std::runtime_error where it refuses all. preview: render a coarse
     // picture first after each restart (the viewer wants it, a file does not). pinned: each thread keeps to a processor of its
-    // own where there are enough, for measurements.
+    // own, for measurements; it always does where there are as many threads as processors.
     Renderer(int threads, bool preview, bool pinned = false);
     ~Renderer();
     Renderer(const Renderer&) = delete;

@@ -40,6 +40,11 @@ ParallelFor parallel_for_on(int threads, std::stop_token stop) {
 
 void lower_priority() { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10); }
 
+int usable_processors() {
+    cpu_set_t allowed;
+    return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? std::max(1, CPU_COUNT(&allowed)) : 1;
+}
+
 bool pin_to_processor(int index) {
     cpu_set_t allowed;
     CPU_ZERO(&allowed);

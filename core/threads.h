@@ -23,8 +23,10 @@ public:
 // machine whose cores are all rendering.
 void lower_priority();
 
-// Keeps the calling thread on the index-th of the processors it may use, counted round: measurements should not wander. False
-// where the system refuses.
+// How many processors the calling thread may use; at least 1.
+[[nodiscard]] int usable_processors();
+
+// Keeps the calling thread on the index-th of the processors it may use, counted round. False where the system refuses.
 bool pin_to_processor(int index);
 
 }  // namespace glint

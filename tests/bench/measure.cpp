@@ -6,10 +6,9 @@
 #include <functional>
 #include <thread>
 
-#include <pthread.h>
-#include <sched.h>
 #include <time.h>
 
+#include "core/threads.h"
 #include "embree_scene.h"
 
 namespace glint::bench {
@@ -21,21 +20,6 @@ double read_clock(clockid_t id) {
     timespec t{};
     clock_gettime(id, &t);
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-// Thread i of several stays on the i-th processor that the process may use, so that none waits for another's.
-void pin_this_thread(int i) {
-    cpu_set_t allowed;
-    if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0) return;
-    int wanted = i % CPU_COUNT(&allowed);
-    for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
-        if (!CPU_ISSET(cpu, &allowed) || wanted-- != 0) continue;
-        cpu_set_t one;
-        CPU_ZERO(&one);
-        CPU_SET(cpu, &one);
-        pthread_setaffinity_np(pthread_self(), sizeof(one), &one);
-        return;
-    }
 }
 
 struct Span {
@@ -73,7 +57,7 @@ double seconds_of_one_pass(const Competitor& competitor, const RaySet& set, std:
         std::vector<std::jthread> workers;
         for (int i = 0; i < threads; ++i) {
             workers.emplace_back([&, i] {
-                pin_this_thread(i);
+                pin_to_processor(i);  // so that none waits for another's
                 start.arrive_and_wait();
                 work(competitor, set, blocks, next, spans[static_cast<std::size_t>(i)]);
             });

@@ -5,12 +5,17 @@
 #include <sched.h>
 
 #include <atomic>
+#include <chrono>
+#include <filesystem>
 #include <mutex>
 #include <new>
 #include <numeric>
 #include <set>
+#include <string>
 #include <thread>
 #include <vector>
+
+#include "core/renderer.h"
 
 namespace glint {
 namespace {
@@ -88,6 +93,36 @@ TEST(Threads, APinnedOneKeepsToOneProcessorOfThoseItMayUse) {
     }
     EXPECT_EQ(static_cast<int>(used.size()), CPU_COUNT(&all));
     for (const int cpu : used) EXPECT_TRUE(CPU_ISSET(static_cast<std::size_t>(cpu), &all));
+}
+
+// Threads of this process that may use one processor only.
+int kept_to_one() {
+    int n = 0;
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+        cpu_set_t mask;
+        n += sched_getaffinity(std::stoi(task.path().filename()), sizeof mask, &mask) == 0 && CPU_COUNT(&mask) == 1 ? 1 : 0;
+    }
+    return n;
+}
+
+TEST(Threads, WorkersThatTakeAllProcessorsHaveOneEach) {
+    const int processors = usable_processors(), before = kept_to_one();
+    if (processors == 1) GTEST_SKIP() << "one processor";
+    const auto settles_at = [&](int expected) {
+        for (int i = 0; i < 500 && kept_to_one() - before != expected; ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        return kept_to_one() - before == expected;
+    };
+    {
+        const Renderer renderer(processors, false);
+        EXPECT_TRUE(settles_at(processors));
+    }
+    for (const int threads : {1, processors + 1}) {
+        const Renderer renderer(threads, true);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        EXPECT_TRUE(settles_at(0)) << threads;
+    }
 }
 
 }  // namespace
