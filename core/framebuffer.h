@@ -49,6 +49,9 @@ private:
     }
 };
 
+// So many sums of nothing.
+void set_to_zero(std::vector<PixelSum>& sums, std::size_t pixels);
+
 struct TileRect {
     int x0, y0, x1, y1;  // in the whole picture, upper bounds excluded
     bool operator==(const TileRect&) const = default;

@@ -97,9 +97,10 @@ void Renderer::State::work_loop(std::uint64_t& current) {
         const int first = task.samples;
         const int last = std::min(goals[task.tile], first + std::clamp(preview ? first : 7 * first, 1, kMaxBatch));
         const TileRect rect = framebuffer->tile_rect(task.tile);
-        if (!task.preview) framebuffer->copy_out(task.tile, o->generation, sums);
+        if (!task.preview && first > 0) framebuffer->copy_out(task.tile, o->generation, sums);
         lock.unlock();
 
+        if (!task.preview && first == 0) set_to_zero(sums, rect.pixels());
         workspace.counts = RayCounts();
         workspace.doublings = {};
         const KernelInput input{*o->frame.scene, *o->frame.accelerator, o->plan, o->camera, generation, o->generation};
