@@ -1,4 +1,4 @@
-// What core asks of the machine's threads beyond std::jthread: builds spread over some of them, and politeness.
+// What core asks of the machine's threads beyond std::jthread: builds spread over some, politeness, a processor to keep to.
 // Knows no scene. Invariant: no more threads work at a time than were asked for, the calling one included.
 #pragma once
 
